@@ -1,0 +1,26 @@
+// The fast flow: leaves → merging on additive moments → boundary relaxation. Bottom-up, 50 to 300 times less work than
+// the loop.
+#pragma once
+
+#include "flow/flow.h"
+
+#include <span>
+
+namespace quadseg::flow {
+
+struct FastOptions {
+    std::size_t regions = 0;    ///< merge down to this many; 0: until nothing is worth merging
+    double misfit_angle = 4.4;  ///< degrees: a merge may cost ω·angle² per area of the smaller side (clean meshes)
+    double noise_factor = 10;   ///< κ: and this many times the noise of the degrees of freedom that it saves
+    bool ladder = true;         ///< plane < sphere < cylinder < revolution < quadric with mild factors
+    int relax_steps = 6;
+    std::size_t smallest_region = 4;  ///< regions of fewer faces join a neighbour at the end
+    /// F' flags: only these faces take part; borders of the others are barriers; their labels come out −1. Empty: all.
+    std::span<const std::uint8_t> active = {};
+};
+
+/// With FastOptions from options.regions, tolerance and detail by fast_options().
+FastOptions fast_options(const Options& options);
+FlowResult run_fast(const FlowInput& input, const FastOptions& fast);
+
+}  // namespace quadseg::flow

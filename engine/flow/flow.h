@@ -1,0 +1,33 @@
+// What the flows have in common: input, result.
+#pragma once
+
+#include <quadseg/segmentation.h>
+
+#include "mesh/features.h"
+#include "mesh/work_mesh.h"
+#include "partition/regions.h"
+#include "runtime/run_control.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace quadseg::flow {
+
+struct FlowInput {
+    const mesh::WorkMesh& mesh;
+    const mesh::FeatureEdges* features;  ///< edges that no region crosses; null: none
+    const Options& options;
+    const runtime::RunControl& control;
+};
+
+/// A flow that is stopped returns its best partition so far with `partial` set; it does not throw Stopped.
+struct FlowResult {
+    partition::Labels labels;  ///< a work face each, 0 … regions−1, every region edge-connected
+    std::size_t regions = 0;
+    StopReason stop = StopReason::converged;
+    bool partial = false;
+    std::vector<MergeStep> history;
+    std::vector<double> energies;
+};
+
+}  // namespace quadseg::flow
