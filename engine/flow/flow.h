@@ -28,6 +28,10 @@ struct FlowResult {
     bool partial = false;
     std::vector<MergeStep> history;
     std::vector<double> energies;
+    /// Empty, or one a region: the surface that the flow verified on the vertices (unit frame); type freeform: none, to
+    /// be chosen.
+    std::vector<Surface> surfaces;
+    double noise = 0;  ///< estimated standard deviation of the vertices, unit frame; 0: not estimated
 };
 
 }  // namespace quadseg::flow
