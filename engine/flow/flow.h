@@ -31,6 +31,7 @@ struct FlowResult {
     /// Empty, or one a region: the surface that the flow verified on the vertices (unit frame); type freeform: none, to
     /// be chosen.
     std::vector<Surface> surfaces;
+    double coarse_seconds = 0;  ///< spent on the simplified mesh
     double noise = 0;  ///< estimated standard deviation of the vertices, unit frame; 0: not estimated
 };
 

@@ -1,0 +1,112 @@
+#include <quadseg/error.h>
+#include <quadseg/segmentation.h>
+
+#include "flow/dispatch.h"
+#include "flow/finish.h"
+#include "flow/flow.h"
+#include "mesh/features.h"
+#include "mesh/work_mesh.h"
+#include "runtime/parallel.h"
+#include "runtime/run_control.h"
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <sys/resource.h>
+
+namespace quadseg {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::size_t peak_resident_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Upper bound of what a job holds at its peak, a face; bench/RESULTS.md has the measurement.
+constexpr std::size_t bytes_per_face = 600;
+
+void check_memory(const MeshView& mesh, const Context* context) {
+    if (!context || context->memory_limit() == 0) return;
+    const std::size_t need = mesh.face_count() * bytes_per_face;
+    if (need > context->memory_limit()) {
+        throw Error(ErrorCode::memory_limit, "segmenting " + std::to_string(mesh.face_count()) + " faces needs about " +
+                                                 std::to_string(need >> 20) + " MiB, the limit is " +
+                                                 std::to_string(context->memory_limit() >> 20) +
+                                                 " MiB; raise the limit or simplify the mesh first");
+    }
+}
+
+/// What a run that was stopped before there was any partition returns: one region of everything.
+Segmentation nothing_yet(const MeshView& mesh, bool deadline) {
+    Segmentation result;
+    result.labels.assign(mesh.face_count(), 0);
+    result.regions.resize(mesh.face_count() > 0 ? 1 : 0);
+    for (Region& region : result.regions) {
+        region.faces = mesh.face_count();
+        region.surface.type = SurfaceType::freeform;
+        region.valid = false;
+    }
+    result.partial = true;
+    result.stop = deadline ? StopReason::deadline : StopReason::cancelled;
+    result.input.faces = mesh.face_count();
+    result.input.vertices = mesh.vertex_count();
+    return result;
+}
+
+Segmentation segment_in_arena(const MeshView& view, const Options& options, const runtime::RunControl& control) {
+    const auto start = Clock::now();
+    Segmentation result;
+    try {
+        control.report(Phase::prepare, 0.05);
+        const mesh::WorkMesh mesh = mesh::build_work_mesh(view, control);
+        std::optional<mesh::FeatureEdges> features;
+        if (options.feature_angle > 0) features = mesh::find_feature_edges(mesh, options.feature_angle, control);
+        const double prepared = seconds_since(start);
+        control.report(Phase::fine, 0.2);
+        const flow::FlowInput input{mesh, features ? &*features : nullptr, options, control};
+        flow::FlowResult flow = flow::run_flow(input);
+        const double flowed = seconds_since(start);
+        control.report(Phase::post, 0.9, flow.regions);
+        const double coarse = flow.coarse_seconds;
+        result = flow::finish(input, std::move(flow));
+        result.seconds.prepare = prepared;
+        result.seconds.coarse = coarse;
+        result.seconds.fine = flowed - prepared - coarse;
+        result.seconds.post = seconds_since(start) - flowed;
+        control.report(Phase::post, 1, result.regions.size(), result.energy.total);
+    } catch (const runtime::Stopped& stopped) {
+        result = nothing_yet(view, stopped.deadline);
+    }
+    result.seconds.total = seconds_since(start);
+    return result;
+}
+
+}  // namespace
+
+Segmentation segment(const MeshView& mesh, const Options& options, Context* context) {
+    const std::vector<std::string> problems = validate(options);
+    if (!problems.empty()) {
+        std::string text;
+        for (const std::string& problem : problems) text += (text.empty() ? "" : " ") + problem;
+        throw Error(ErrorCode::invalid_argument, text);
+    }
+    check_memory(mesh, context);
+    const runtime::RunControl control(context);
+    Segmentation result;
+    runtime::in_arena(context ? context->threads() : 0, [&] {
+        result = segment_in_arena(mesh, options, control);
+        result.threads = runtime::arena_threads();
+    });
+    result.peak_bytes = peak_resident_bytes();
+    return result;
+}
+
+}  // namespace quadseg
