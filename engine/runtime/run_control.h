@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
-#include <mutex>
 
 namespace quadseg::runtime {
 
@@ -30,7 +29,9 @@ class RunControl {
         if ((++counter & 255U) == 0) check();
     }
 
-    /// `phase` is under way: fraction 0..1 of the whole call. Monotone by construction (a smaller fraction is ignored).
+    /// `phase` is under way: fraction 0..1 of the whole call. Monotone by construction: a fraction below an earlier one
+    /// is reported as that one. Any thread may report; at most about 50 reports a second reach the callback, and they
+    /// reach it one by one.
     void report(Phase phase, double fraction, std::size_t regions = 0, double energy = 0) const;
     /// From now on should_stop() and check() say no: for the last, bounded steps that make a result of a stopped run.
     void ignore_stop() noexcept { ignore_.store(true, std::memory_order_relaxed); }
@@ -38,6 +39,10 @@ class RunControl {
   private:
     std::shared_ptr<Context::State> state_;
     std::atomic<bool> ignore_{false};
+    // Progress of this call; written inside the callback's guard only.
+    mutable std::atomic<Context::Clock::rep> next_report_{0};
+    mutable std::atomic<int> phase_{-1};
+    mutable std::atomic<double> fraction_{0};
 };
 
 }  // namespace quadseg::runtime

@@ -1,0 +1,91 @@
+#include "mesh/work_mesh.h"
+
+#include <quadseg/error.h>
+
+#include "mesh/build.h"
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace quadseg::mesh {
+
+namespace {
+
+using build::block;
+
+/// Takes the duplicates out of the order of faces.
+std::vector<std::uint32_t> without(const std::vector<std::uint32_t>& order, std::size_t input_faces,
+                                   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& duplicates) {
+    std::vector<std::uint8_t> dropped(input_faces, 0);
+    for (const auto& duplicate : duplicates) dropped[duplicate.first] = 1;
+    std::vector<std::uint32_t> rest;
+    rest.reserve(order.size());
+    std::copy_if(order.begin(), order.end(), std::back_inserter(rest), [&](std::uint32_t f) { return !dropped[f]; });
+    return rest;
+}
+
+}  // namespace
+
+WorkMesh build_work_mesh(const MeshView& input, const runtime::RunControl& control) {
+    WorkMesh mesh;
+    build::measure_box(input, build::check_input(input, control), mesh, control);
+    build::renumber(input, build::morton_order(input, mesh.frame, control), mesh, control);
+    if (mesh.face_count() == 0) throw Error(ErrorCode::empty_mesh, "no face has three different vertices");
+    mesh.report.degenerate_faces = input.face_count() - mesh.face_count();
+
+    build::EdgeCounts edges = build::match_edges(mesh, control);
+    const auto duplicates = std::move(edges.duplicates);
+    if (!duplicates.empty()) {
+        build::renumber(input, without(mesh.input_face, input.face_count(), duplicates), mesh, control);
+        edges = build::match_edges(mesh, control);
+    }
+    mesh.report.duplicate_faces = duplicates.size();
+    mesh.report.border_edges = edges.border;
+    mesh.report.non_manifold_edges = edges.non_manifold;
+
+    build::measure_faces(mesh, control);
+    if (!(mesh.total_area > 0)) throw Error(ErrorCode::empty_mesh, "no face has an area");
+    mesh.report.non_manifold_vertices = build::count_non_manifold_vertices(mesh, control);
+    if (edges.same_direction > 0) build::orient(mesh, control);
+    if (edges.border > 0) build::stitch_borders(mesh, control);
+    build::find_components(mesh, control);
+    build::find_label_sources(input, duplicates, mesh, control);
+
+    runtime::parallel_for(mesh.positions.size(), block,
+                          [&](std::size_t v) { mesh.positions[v] = mesh.frame.to_unit(mesh.positions[v]); });
+    return mesh;
+}
+
+VertexFaces vertex_faces(const WorkMesh& mesh) {
+    VertexFaces result;
+    result.begin.assign(mesh.vertex_count() + 1, 0);
+    for (const auto& t : mesh.faces) {
+        for (const std::uint32_t v : t) ++result.begin[v];
+    }
+    runtime::exclusive_scan(result.begin);
+    result.face.resize(3 * mesh.face_count());
+    // Filled from the back, the ends become the begins.
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) result.begin[v] = result.begin[v + 1];
+    for (std::size_t f = mesh.face_count(); f-- > 0;) {
+        for (const std::uint32_t v : mesh.faces[f]) result.face[--result.begin[v]] = static_cast<std::uint32_t>(f);
+    }
+    return result;
+}
+
+std::vector<std::int32_t> labels_to_input(const WorkMesh& mesh, const std::vector<std::int32_t>& labels) {
+    std::vector<std::int32_t> result(mesh.label_source.size());
+    runtime::parallel_for(result.size(), block, [&](std::size_t i) {
+        const std::int32_t f = mesh.label_source[i];
+        result[i] = f == no_face ? -1 : labels[static_cast<std::size_t>(f)];
+    });
+    return result;
+}
+
+std::vector<std::int32_t> labels_from_input(const WorkMesh& mesh, std::span<const std::int32_t> labels) {
+    std::vector<std::int32_t> result(mesh.face_count());
+    runtime::parallel_for(result.size(), block, [&](std::size_t f) { result[f] = labels[mesh.input_face[f]]; });
+    return result;
+}
+
+}  // namespace quadseg::mesh

@@ -1,0 +1,116 @@
+#include "partition/regions.h"
+
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace quadseg::partition {
+
+RegionFaces region_faces(const Labels& labels, std::size_t count) {
+    RegionFaces regions;
+    regions.begin.assign(count + 1, 0);
+    for (const std::int32_t label : labels) {
+        if (label >= 0) ++regions.begin[static_cast<std::size_t>(label)];
+    }
+    const std::uint32_t total = runtime::exclusive_scan(regions.begin);
+    regions.face.resize(total);
+    std::vector<std::uint32_t> next(regions.begin.begin(), regions.begin.end() - 1);
+    for (std::size_t f = 0; f < labels.size(); ++f) {
+        if (labels[f] >= 0) regions.face[next[static_cast<std::size_t>(labels[f])]++] = static_cast<std::uint32_t>(f);
+    }
+    return regions;
+}
+
+std::size_t compact(Labels& labels) {
+    std::int32_t largest = -1;
+    for (const std::int32_t label : labels) largest = std::max(largest, label);
+    std::vector<std::int32_t> renumbered(static_cast<std::size_t>(largest + 1), -1);
+    std::int32_t count = 0;
+    for (std::int32_t& label : labels) {
+        if (label < 0) continue;
+        std::int32_t& r = renumbered[static_cast<std::size_t>(label)];
+        if (r < 0) r = count++;
+        label = r;
+    }
+    return static_cast<std::size_t>(count);
+}
+
+std::size_t split_disconnected(const mesh::WorkMesh& mesh, Labels& labels) {
+    // Parts numbered by first face are compact already: a flood from each face that no part has yet.
+    Labels parts(labels.size(), -1);
+    std::vector<std::uint32_t> stack;
+    std::int32_t count = 0;
+    for (std::size_t start = 0; start < labels.size(); ++start) {
+        if (parts[start] >= 0 || labels[start] < 0) continue;
+        parts[start] = count;
+        stack.assign(1, static_cast<std::uint32_t>(start));
+        while (!stack.empty()) {
+            const std::uint32_t f = stack.back();
+            stack.pop_back();
+            for (const std::int32_t g : mesh.neighbors[f]) {
+                if (g < 0) continue;
+                const auto neighbor = static_cast<std::size_t>(g);
+                if (parts[neighbor] >= 0 || labels[neighbor] != labels[start]) continue;
+                parts[neighbor] = count;
+                stack.push_back(static_cast<std::uint32_t>(g));
+            }
+        }
+        ++count;
+    }
+    labels = std::move(parts);
+    return static_cast<std::size_t>(count);
+}
+
+void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out) {
+    out.corners.resize(3 * count);
+    out.normals.resize(count);
+    out.areas.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t f = faces[i];
+        const auto& v = mesh.faces[f];
+        for (std::size_t k = 0; k < 3; ++k) out.corners[3 * i + k] = mesh.positions[v[k]];
+        out.normals[i] = mesh.normals[f];
+        out.areas[i] = mesh.areas[f];
+    }
+}
+
+std::vector<quadric::RegionFit> fit_regions(const mesh::WorkMesh& mesh, const RegionFaces& regions,
+                                            const quadric::RegionFitOptions& options,
+                                            const runtime::RunControl& control) {
+    std::vector<quadric::RegionFit> fits(regions.count());
+    const auto fit = [&](std::size_t r, GatheredRegion& scratch) {
+        control.check();
+        gather(mesh, regions.face.data() + regions.begin[r], regions.size(r), scratch);
+        fits[r] = quadric::fit_region(scratch.soup(), options);
+    };
+    // Runs of small regions share a task; a large one has a task of its own, so that no task waits behind it.
+    constexpr std::size_t task_faces = 4096;
+    std::vector<std::size_t> task_begin;
+    std::size_t filled = task_faces;
+    for (std::size_t r = 0; r < regions.count(); ++r) {
+        if (filled >= task_faces || regions.size(r) >= task_faces) {
+            task_begin.push_back(r);
+            filled = 0;
+        }
+        filled += regions.size(r) + 16;
+    }
+    task_begin.push_back(regions.count());
+    // Large first: the last task to start should be a short one.
+    std::vector<std::size_t> order(task_begin.size() - 1);
+    for (std::size_t t = 0; t < order.size(); ++t) order[t] = t;
+    const auto faces_of = [&](std::size_t t) {
+        return regions.begin[task_begin[t + 1]] - regions.begin[task_begin[t]];
+    };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return faces_of(a) != faces_of(b) ? faces_of(a) > faces_of(b) : a < b;
+    });
+    runtime::parallel_for(order.size(), 1, [&](std::size_t i) {
+        GatheredRegion scratch;
+        const std::size_t t = order[i];
+        for (std::size_t r = task_begin[t]; r < task_begin[t + 1]; ++r) fit(r, scratch);
+    });
+    return fits;
+}
+
+}  // namespace quadseg::partition
