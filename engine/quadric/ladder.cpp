@@ -1,0 +1,91 @@
+#include "quadric/ladder.h"
+
+#include "quadric/fit.h"
+#include "quadric/restricted_fit.h"
+
+namespace quadseg::quadric {
+namespace {
+
+/// An angle of 1e-6 rad on every normal: energies below this are rounding and do not decide between models.
+constexpr double rounding_angle_square = 1e-12;
+
+/// Without the ladder a quadric must beat the plane by more than this to be worth its degrees of freedom.
+constexpr double equal_to_rounding = 1 + 1e-3;
+
+}  // namespace
+
+double ladder_factor(LadderModel model) noexcept {
+    constexpr std::array<double, 5> factors = {1, 1.05, 1.1, 1.2, 1.5};
+    return factors[static_cast<std::size_t>(model)];
+}
+
+int degrees_of_freedom(LadderModel model) noexcept {
+    constexpr std::array<int, 5> dof = {3, 4, 5, 6, 9};
+    return dof[static_cast<std::size_t>(model)];
+}
+
+Moments joined(const Moments& a, const Vec3& origin_a, const Moments& b, const Vec3& origin_b,
+               const Vec3& origin) noexcept {
+    Moments sum = shifted(a, origin - origin_a);
+    sum += shifted(b, origin - origin_b);
+    return sum;
+}
+
+LadderFit fit_ladder(const Moments& m, double weight, bool ladder) noexcept {
+    LadderFit result;
+    const Spread size = spread(m);
+    if (!(size.radius > 0)) {
+        result.c = fit_plane(m, weight).c;
+        return result;
+    }
+    const double scale = 1 / size.radius;
+    const Moments centred = scaled(shifted(m, size.centroid), scale);
+    const double local_weight = scaled_weight(weight, scale);
+    const double rounding = rounding_angle_square * (local_weight + 1e-12) * centred.area[0];
+
+    QuadricFit best = fit_plane(centred, local_weight);
+    LadderModel model = LadderModel::plane;
+    double best_cost = best.energy + rounding;
+    const auto factor = [ladder](LadderModel candidate) {
+        return candidate == LadderModel::plane ? 1.0 : ladder ? ladder_factor(candidate) : equal_to_rounding;
+    };
+    const auto offer = [&](const QuadricFit& candidate, LadderModel candidate_model) {
+        const double cost = factor(candidate_model) * (candidate.energy + rounding);
+        if (cost < best_cost) {
+            best = candidate;
+            model = candidate_model;
+            best_cost = cost;
+        }
+    };
+    // The quadric's energy bounds those of all the others from below: it tells which of them can still win.
+    if (best_cost > factor(LadderModel::sphere) * rounding) {
+        const NormalEquations equations(centred, local_weight);
+        const QuadricFit quadric = fit_least_squares(equations);
+        const double bound = quadric.energy + rounding;
+        if (ladder) {
+            if (factor(LadderModel::sphere) * bound < best_cost) {
+                offer(restricted_sphere(equations), LadderModel::sphere);
+            }
+            if (factor(LadderModel::cylinder) * bound < best_cost) {
+                offer(restricted_cylinder(equations, cylinder_direction(centred)), LadderModel::cylinder);
+            }
+            if (factor(LadderModel::revolution) * bound < best_cost) {
+                offer(restricted_revolution(equations, revolution_direction(centred)), LadderModel::revolution);
+            }
+            if (factor(LadderModel::revolution) * bound < best_cost) {
+                offer(restricted_revolution(equations, revolution_direction(quadric.c)), LadderModel::revolution);
+            }
+        }
+        offer(quadric, LadderModel::quadric);
+    }
+    result.c = from_local(best.c, size.centroid, scale);
+    for (double& v : result.c) v *= size.radius;  // |∇f| as it was in the local frame
+    const double to_input_units = size.radius * size.radius * size.radius * size.radius;
+    result.energy = best.energy * to_input_units;
+    result.cost = (ladder ? ladder_factor(model) : 1.0) * result.energy;
+    result.model = model;
+    result.dof = degrees_of_freedom(model);
+    return result;
+}
+
+}  // namespace quadseg::quadric
