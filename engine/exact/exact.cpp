@@ -1,0 +1,84 @@
+#include "exact/exact.h"
+
+#include "exact/complete.h"
+#include "exact/explained.h"
+#include "exact/grow.h"
+#include "exact/scene.h"
+#include "exact/search.h"
+#include "exact/select.h"
+#include "exact/unite.h"
+#include "runtime/parallel.h"
+#include "runtime/per_thread.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace quadseg::exact {
+
+namespace {
+
+/// Sure facets, largest first, grown to planes; a facet inside an earlier plane is none of its own.
+std::vector<Candidate> plane_candidates(const Scene& scene) {
+    std::vector<std::uint32_t> sure;
+    for (std::size_t i = 0; i < scene.facets.count(); ++i) {
+        if (scene.facets.facet[i].sure) sure.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<Candidate> candidates(sure.size());
+    runtime::PerThread<Marks> marks;
+    runtime::parallel_for(sure.size(), 1, [&](std::size_t i) {
+        const Facet& facet = scene.facets.facet[sure[i]];
+        Surface plane;
+        plane.type = SurfaceType::plane;
+        plane.axis = to_array(facet.normal);
+        plane.point = to_array(facet.normal * facet.offset);
+        const std::span<const std::uint32_t> faces(scene.facets.face.data() + scene.facets.begin[sure[i]],
+                                                   scene.facets.size(sure[i]));
+        candidates[i] = grow(scene, plane, faces, marks.local());
+    });
+    return candidates;
+}
+
+void mark_covered(const std::vector<std::int32_t>& owner, std::vector<std::uint8_t>& covered) {
+    for (std::size_t f = 0; f < owner.size(); ++f) covered[f] = owner[f] >= 0 ? 1 : 0;
+}
+
+void append(std::vector<Candidate>& all, std::vector<Candidate>&& more) {
+    for (Candidate& candidate : more) all.push_back(std::move(candidate));
+}
+
+}  // namespace
+
+ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
+    const Scene scene = build_scene(mesh, control);
+    std::vector<Candidate> candidates = plane_candidates(scene);
+    std::vector<std::uint8_t> covered(mesh.face_count(), 0);
+    append(candidates, search_surfaces(scene, false, covered));
+    Selection selection = select(scene, candidates);
+    mark_covered(selection.owner, covered);
+    append(candidates, search_surfaces(scene, true, covered));
+    selection = select(scene, candidates);
+
+    Explained state;
+    state.region = selection.owner;
+    for (const Candidate& candidate : candidates) state.surface.push_back(candidate.surface);
+    separate_parts(scene, state);
+    add_planes(scene, selection.largest_step, state);
+    extend_to_borders(scene, selection.largest_step, state);
+    unite_equal(scene, selection.largest_step, state);
+    absorb_scraps(scene, state);
+    unite_equal(scene, selection.largest_step, state);
+
+    ExactSurfaces result;
+    result.labels = std::move(state.region);
+    result.surfaces = std::move(state.surface);
+    result.noise = selection.noise;
+    result.largest_step = selection.largest_step;
+    double covered_area = 0;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        if (result.labels[f] >= 0) covered_area += mesh.areas[f];
+    }
+    result.covered = mesh.total_area > 0 ? covered_area / mesh.total_area : 0;
+    return result;
+}
+
+}  // namespace quadseg::exact

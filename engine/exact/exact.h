@@ -1,0 +1,25 @@
+// The exact stage: on clean CAD meshes surfaces are hypothesised on patches and verified on vertices, which lie on the
+// true surface to the precision of the file while wrong surfaces miss by orders of magnitude more.
+#pragma once
+
+#include <quadseg/segmentation.h>
+
+#include "mesh/work_mesh.h"
+#include "partition/regions.h"
+
+#include <vector>
+
+namespace quadseg::exact {
+
+struct ExactSurfaces {
+    partition::Labels labels;       ///< −1: no surface found (free-form); regions are edge-connected
+    std::vector<Surface> surfaces;  ///< one a label, unit frame
+    double covered = 0;             ///< share of the area that has a surface
+    double noise = 0;               ///< median distance of vertices to their surfaces, unit frame
+    double largest_step = 0;        ///< radians; see Selection
+};
+
+/// Throws Stopped.
+ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control);
+
+}  // namespace quadseg::exact

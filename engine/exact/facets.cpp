@@ -1,0 +1,201 @@
+#include "exact/facets.h"
+
+#include "math/symmetric3.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadseg::exact {
+
+namespace {
+
+double longest_edge(const mesh::WorkMesh& mesh, std::size_t f) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+        longest = std::max(longest, squared_norm(mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)));
+    }
+    return std::sqrt(longest);
+}
+
+/// Smallest altitude of each face.
+std::vector<float> face_heights(const mesh::WorkMesh& mesh) {
+    std::vector<float> heights(mesh.face_count());
+    for (std::size_t f = 0; f < heights.size(); ++f) {
+        const double longest = longest_edge(mesh, f);
+        heights[f] = static_cast<float>(longest > 0 ? 2 * mesh.areas[f] / longest : 0);
+    }
+    return heights;
+}
+
+/// Faces by falling height, to a factor of 2, then by index: slivers, whose normals say little, come last.
+std::vector<std::uint32_t> order_by_height(const std::vector<float>& heights) {
+    const auto bucket = [](float h) { return h > 0 ? std::clamp(-std::ilogb(h), 0, 62) : 63; };
+    std::vector<std::size_t> start(65, 0);
+    for (const float h : heights) ++start[static_cast<std::size_t>(bucket(h)) + 1];
+    for (std::size_t b = 1; b < start.size(); ++b) start[b] += start[b - 1];
+    std::vector<std::uint32_t> order(heights.size());
+    for (std::size_t f = 0; f < heights.size(); ++f) {
+        order[start[static_cast<std::size_t>(bucket(heights[f]))]++] = static_cast<std::uint32_t>(f);
+    }
+    return order;
+}
+
+/// Running sums of the corners of a cluster, about its first corner.
+class PlaneSums {
+  public:
+    explicit PlaneSums(const Vec3& origin) : origin_(origin) {}
+    void add(const Vec3& p) {
+        const Vec3 u = p - origin_;
+        sum_ += u;
+        second_.add_outer(u);
+        ++count_;
+    }
+    void fit(Vec3& normal, double& offset) const {
+        const double n = static_cast<double>(count_);
+        const Vec3 mean = sum_ / n;
+        Symmetric3 covariance = second_;
+        covariance.add_outer(mean, -n);
+        const EigenSystem eigen = eigen_decomposition(covariance);
+        const Vec3 fitted = dot(eigen.vectors[0], normal) < 0 ? -eigen.vectors[0] : eigen.vectors[0];
+        normal = fitted;
+        offset = dot(normal, origin_ + mean);
+    }
+
+  private:
+    Vec3 origin_, sum_;
+    Symmetric3 second_;
+    std::size_t count_ = 0;
+};
+
+class FacetFinder {
+  public:
+    FacetFinder(const mesh::WorkMesh& mesh, const Tolerances& t, const runtime::RunControl& control)
+        : mesh_(mesh), tolerances_(t), control_(control), heights_(face_heights(mesh)) {
+        result_.of_face.assign(mesh.face_count(), -1);
+        incident_.assign(mesh.vertex_count(), 0);
+        seen_.assign(mesh.vertex_count(), 0);
+        for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                ++incident_[mesh.faces[f][k]];
+                if (mesh.neighbors[f][k] == mesh::no_face) {
+                    // A vertex on a border is never interior: its count can't be reached.
+                    incident_[mesh.faces[f][k]] += 1U << 20;
+                    incident_[mesh.faces[f][(k + 1) % 3]] += 1U << 20;
+                }
+            }
+        }
+    }
+
+    Facets find() {
+        for (const std::uint32_t seed : order_by_height(heights_)) {
+            control_.check_often(polls_);
+            if (result_.of_face[seed] < 0) grow(seed);
+        }
+        index_faces();
+        return std::move(result_);
+    }
+
+  private:
+    void grow(std::uint32_t seed) {
+        const auto id = static_cast<std::int32_t>(result_.facet.size());
+        Facet facet{mesh_.normals[seed], dot(mesh_.normals[seed], mesh_.corner(seed, 0)), 0, false};
+        PlaneSums sums(mesh_.corner(seed, 0));
+        members_.assign(1, seed);
+        result_.of_face[seed] = id;
+        std::size_t next_fit = 4;
+        if (squared_norm(facet.normal) > 0) {
+            for (std::size_t i = 0; i < members_.size(); ++i) {
+                control_.check_often(polls_);
+                const std::uint32_t f = members_[i];
+                for (int k = 0; k < 3; ++k) sums.add(mesh_.corner(f, k));
+                if (i + 1 == next_fit) {
+                    sums.fit(facet.normal, facet.offset);
+                    next_fit *= 2;
+                }
+                for (const std::int32_t g : mesh_.neighbors[f]) {
+                    if (g < 0 || result_.of_face[static_cast<std::size_t>(g)] >= 0) continue;
+                    if (!coplanar(static_cast<std::uint32_t>(g), facet)) continue;
+                    result_.of_face[static_cast<std::size_t>(g)] = id;
+                    members_.push_back(static_cast<std::uint32_t>(g));
+                }
+            }
+            if (members_.size() > 2) sums.fit(facet.normal, facet.offset);
+        }
+        for (const std::uint32_t f : members_) facet.area += mesh_.areas[f];
+        facet.sure = has_interior_vertex() && !creeps_away(id, facet);
+        for (const std::uint32_t f : members_) {
+            for (const std::uint32_t v : mesh_.faces[f]) seen_[v] = 0;
+        }
+        result_.facet.push_back(facet);
+    }
+
+    bool coplanar(std::uint32_t f, const Facet& facet) const {
+        for (int k = 0; k < 3; ++k) {
+            if (!(std::abs(dot(facet.normal, mesh_.corner(f, k)) - facet.offset) <= tolerances_.facet)) return false;
+        }
+        // The vertices bound the tilt of a face that is high enough; what remains to be seen is whether it is folded
+        // over.
+        return static_cast<double>(heights_[f]) < 4 * tolerances_.facet || dot(facet.normal, mesh_.normals[f]) > 0;
+    }
+
+    bool has_interior_vertex() {
+        bool interior = false;
+        for (const std::uint32_t f : members_) {
+            for (const std::uint32_t v : mesh_.faces[f]) {
+                if (++seen_[v] == incident_[v]) interior = true;
+            }
+        }
+        return interior;
+    }
+
+    /// A patch of a curved surface that is flat within the tolerance goes on smoothly beyond its border.
+    bool creeps_away(std::int32_t id, const Facet& facet) const {
+        double border = 0, creeping = 0;
+        for (const std::uint32_t f : members_) {
+            for (int k = 0; k < 3; ++k) {
+                const std::int32_t g = mesh_.neighbors[f][static_cast<std::size_t>(k)];
+                if (g >= 0 && result_.of_face[static_cast<std::size_t>(g)] == id) continue;
+                const double length = norm(mesh_.corner(f, (k + 1) % 3) - mesh_.corner(f, k));
+                border += length;
+                if (g < 0) continue;
+                double d = 0;
+                for (int j = 0; j < 3; ++j) {
+                    d = std::max(
+                        d, std::abs(dot(facet.normal, mesh_.corner(static_cast<std::size_t>(g), j)) - facet.offset));
+                }
+                if (d < 20 * tolerances_.facet &&
+                    dot(facet.normal, mesh_.normals[static_cast<std::size_t>(g)]) > 0.9994) {
+                    creeping += length;
+                }
+            }
+        }
+        return creeping > 0.5 * border;
+    }
+
+    void index_faces() {
+        result_.begin.assign(result_.count() + 1, 0);
+        for (const std::int32_t id : result_.of_face) ++result_.begin[static_cast<std::size_t>(id) + 1];
+        for (std::size_t i = 1; i < result_.begin.size(); ++i) result_.begin[i] += result_.begin[i - 1];
+        result_.face.resize(result_.of_face.size());
+        std::vector<std::uint32_t> next(result_.begin.begin(), result_.begin.end() - 1);
+        for (std::size_t f = 0; f < result_.of_face.size(); ++f) {
+            result_.face[next[static_cast<std::size_t>(result_.of_face[f])]++] = static_cast<std::uint32_t>(f);
+        }
+    }
+
+    const mesh::WorkMesh& mesh_;
+    const Tolerances& tolerances_;
+    const runtime::RunControl& control_;
+    std::vector<float> heights_;
+    Facets result_;
+    std::vector<std::uint32_t> incident_, seen_, members_;
+    std::size_t polls_ = 0;
+};
+
+}  // namespace
+
+Facets find_facets(const mesh::WorkMesh& mesh, const Tolerances& tolerances, const runtime::RunControl& control) {
+    return FacetFinder(mesh, tolerances, control).find();
+}
+
+}  // namespace quadseg::exact

@@ -1,0 +1,31 @@
+// Facets: clusters of coplanar triangles. Evidence is counted in facets, since coplanar triangles say a thing only
+// once.
+#pragma once
+
+#include "exact/tolerances.h"
+#include "mesh/work_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace quadseg::exact {
+
+struct Facet {
+    Vec3 normal;
+    double offset = 0;  ///< normal·x = offset
+    double area = 0;
+    bool sure = false;  ///< a plane of the part, not a strip of a curved surface: it has a vertex in its interior
+};
+
+struct Facets {
+    std::vector<std::int32_t> of_face;
+    std::vector<Facet> facet;
+    std::vector<std::uint32_t> begin, face;  ///< CSR: faces of a facet
+
+    std::size_t count() const noexcept { return facet.size(); }
+    std::size_t size(std::size_t f) const noexcept { return begin[f + 1] - begin[f]; }
+};
+
+Facets find_facets(const mesh::WorkMesh& mesh, const Tolerances& tolerances, const runtime::RunControl& control);
+
+}  // namespace quadseg::exact

@@ -1,0 +1,187 @@
+#include "exact/hypothesis.h"
+
+#include "exact/face_fit.h"
+#include "surface/fit.h"
+#include "surface/jets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace quadseg::exact {
+
+namespace {
+
+constexpr std::array<std::size_t, 5> patch_sizes{40, 16, 8, 5, 3};
+constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
+                           SurfaceType::torus};
+constexpr double most_gap = 0.3;
+
+struct PatchPoints {
+    std::vector<std::uint32_t> vertices;
+    std::vector<Vec3> points, face_normals, jet_normals;
+};
+
+PatchPoints patch_points(const Scene& scene, std::span<const std::uint32_t> faces, Marks& marks) {
+    PatchPoints p;
+    marks.clear();
+    Vec3 mean;
+    for (const std::uint32_t f : faces) {
+        mean += scene.mesh.normals[f] * scene.mesh.areas[f];
+        for (const std::uint32_t v : scene.mesh.faces[f]) {
+            if (marks.mark_vertex(v)) p.vertices.push_back(v);
+        }
+    }
+    std::vector<std::uint32_t> sorted = p.vertices;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<Vec3> normals(sorted.size());
+    for (const std::uint32_t f : faces) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t v = scene.mesh.faces[f][static_cast<std::size_t>(k)];
+            const auto i = static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), v) - sorted.begin());
+            const Vec3 a = scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k);
+            const Vec3 b = scene.mesh.corner(f, (k + 2) % 3) - scene.mesh.corner(f, k);
+            normals[i] += scene.mesh.normals[f] * angle_between(a, b);
+        }
+    }
+    p.vertices = std::move(sorted);
+    for (const std::uint32_t v : p.vertices) p.points.push_back(scene.mesh.positions[v]);
+    for (const Vec3& n : normals) p.face_normals.push_back(normalized(n));
+    if (p.points.size() >= 9) p.jet_normals = surface::patch_normals(p.points, normalized(mean));
+    return p;
+}
+
+/// Vertices lie on the surface, except that those on trim curves may be off (PROTOTYPE: by 1e-6 to 2e-5 of the
+/// diagonal).
+bool holds(const Scene& scene, const surface::SurfaceFit& fit, const surface::PointSet& points, double tolerance) {
+    if (!fit.ok) return false;
+    const auto dof = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
+    const std::size_t n = points.points.size();
+    if (fit.q90 <= tolerance && n >= dof + 3) return true;
+    if (!(fit.median <= tolerance / 2 && fit.q97 <= scene.tolerances.trim)) return false;
+    std::size_t within = 0;
+    for (const Vec3& p : points.points) {
+        if (std::abs(surface::signed_distance(fit.surface, p)) <= tolerance) ++within;
+    }
+    return within >= 2 * dof + 2;
+}
+
+/// Vertices alone cannot decide: two rims always lie on a sphere, a cone and a torus. Smaller is better.
+double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_t> faces, double tolerance) {
+    const FaceFitter fitter(scene, s);
+    const surface::SurfaceEvaluator evaluate(s);
+    double normals = 0, midpoints = 0;
+    std::size_t counted = 0, edges = 0, exact_edges = 0;
+    for (const std::uint32_t f : faces) {
+        if (!(scene.mesh.areas[f] > 0)) continue;
+        const double angle = fitter(f).angle;
+        normals += angle * angle;
+        ++counted;
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 a = scene.mesh.corner(f, k), b = scene.mesh.corner(f, (k + 1) % 3);
+            const double length = norm(b - a);
+            if (!(length > 0)) continue;
+            const double d = std::abs(evaluate.distance((a + b) / 2.0));
+            midpoints += 16 * d * d / (length * length);
+            ++edges;
+            if (d <= tolerance) ++exact_edges;
+        }
+    }
+    if (counted == 0 || edges == 0) return 1e300;
+    double cost = normals / static_cast<double>(counted) + midpoints / static_cast<double>(edges) + 1e-7;
+    switch (s.type) {
+        case SurfaceType::sphere:
+            cost *= 1.05;
+            break;
+        case SurfaceType::cone:
+            cost *= 1.02;
+            break;
+        case SurfaceType::torus:
+            cost *= 1.15;
+            break;
+        default:
+            break;
+    }
+    // Rulings: edges that lie on the surface with their midpoints.
+    const bool ruled = s.type == SurfaceType::cylinder || s.type == SurfaceType::cone;
+    if (ruled && 100 * exact_edges > 15 * edges) cost *= 0.5;
+    return cost;
+}
+
+}  // namespace
+
+Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets,
+                    const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
+    marks.prepare(scene.mesh.face_count(), scene.mesh.vertex_count());
+    marks.clear();
+    Patch patch;
+    std::vector<std::uint32_t> queue{seed};
+    marks.mark_face(seed);
+    std::vector<std::int32_t> taken;
+    for (std::size_t i = 0; i < queue.size() && taken.size() < facets; ++i) {
+        const std::int32_t id = scene.facets.of_face[queue[i]];
+        if (std::find(taken.begin(), taken.end(), id) != taken.end()) continue;
+        taken.push_back(id);
+        const auto facet = static_cast<std::size_t>(id);
+        const std::size_t first = patch.faces.size();
+        for (std::size_t j = scene.facets.begin[facet]; j < scene.facets.begin[facet + 1]; ++j) {
+            if (usable(scene.facets.face[j])) patch.faces.push_back(scene.facets.face[j]);
+        }
+        patch.facet_end.push_back(patch.faces.size());
+        for (std::size_t j = first; j < patch.faces.size(); ++j) {
+            const std::uint32_t f = patch.faces[j];
+            for (int k = 0; k < 3; ++k) {
+                if (scene.is_crease(f, k)) continue;
+                const auto g = static_cast<std::uint32_t>(scene.mesh.neighbors[f][static_cast<std::size_t>(k)]);
+                if (!scene.in_sure_plane(g) && usable(g) && marks.mark_face(g)) queue.push_back(g);
+            }
+        }
+    }
+    return patch;
+}
+
+std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance,
+                               Marks& marks) {
+    const PatchPoints p = patch_points(scene, faces, marks);
+    std::optional<Surface> best;
+    double best_cost = 0;
+    const surface::FitOptions options{20, true, tolerance / 10};
+    for (const SurfaceType type : types) {
+        if (p.points.size() < static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 3) continue;
+        for (const std::vector<Vec3>* normals : {&p.jet_normals, &p.face_normals}) {
+            if (normals->empty()) continue;
+            const surface::PointSet points{p.points, *normals, {}};
+            const surface::SurfaceFit fit = surface::fit(type, points, options);
+            if (!holds(scene, fit, points, tolerance)) continue;
+            const double cost = misfit(scene, fit.surface, faces, tolerance);
+            if (!best || cost < best_cost) {
+                best = fit.surface;
+                best_cost = cost;
+            }
+            break;
+        }
+    }
+    return best;
+}
+
+std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bool loose,
+                                      const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
+    const double tolerance = loose ? scene.tolerances.loose_fit : scene.tolerances.fit;
+    const Patch patch = collect_patch(scene, seed, patch_sizes.front(), usable, marks);
+    std::size_t tried = 0;
+    for (const std::size_t size : patch_sizes) {
+        const std::size_t facets = std::min(size, patch.facet_end.size());
+        if (facets < 2 || facets == tried) continue;
+        tried = facets;
+        const std::vector<std::uint32_t> faces = patch.up_to(facets);
+        const std::optional<Surface> surface = explain(scene, faces, tolerance, marks);
+        if (!surface) continue;
+        Candidate candidate = grow(scene, *surface, faces, marks);
+        candidate.loose = loose;
+        if (candidate.faces.size() * 2 < faces.size() || candidate.gap > most_gap) continue;
+        return candidate;
+    }
+    return std::nullopt;
+}
+
+}  // namespace quadseg::exact

@@ -1,0 +1,35 @@
+// Hypotheses: surfaces fitted to small patches, accepted only where the vertices lie on them.
+#pragma once
+
+#include "exact/grow.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace quadseg::exact {
+
+/// Faces around a seed in breadth-first order of facets, creases not crossed.
+struct Patch {
+    std::vector<std::uint32_t> faces;
+    std::vector<std::size_t> facet_end;  ///< after the k-th facet: number of faces
+    std::vector<std::uint32_t> up_to(std::size_t facets) const {
+        return {faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(facet_end[facets - 1])};
+    }
+};
+
+/// `usable(f)`: faces that may be part of it (not yet explained).
+Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets,
+                    const std::function<bool(std::uint32_t)>& usable, Marks& marks);
+
+/// The surface that explains a patch, if one does within the tolerance.
+std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance,
+                               Marks& marks);
+
+/// Tries patches of falling size around a seed; grows the first surface that holds. Empty: no surface, or one that an
+/// honest look at its border refuses.
+std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bool loose,
+                                      const std::function<bool(std::uint32_t)>& usable, Marks& marks);
+
+}  // namespace quadseg::exact

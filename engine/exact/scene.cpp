@@ -1,0 +1,117 @@
+#include "exact/scene.h"
+
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace quadseg::exact {
+
+namespace {
+
+/// Seed patches do not cross edges sharper than this; growing does, by its own scale.
+constexpr double crease_angle = 40 * std::numbers::pi / 180;
+
+std::vector<float> face_heights(const mesh::WorkMesh& mesh) {
+    std::vector<float> heights(mesh.face_count());
+    runtime::parallel_for(heights.size(), 16384, [&](std::size_t f) {
+        double longest = 0;
+        for (int k = 0; k < 3; ++k) {
+            longest = std::max(longest, squared_norm(mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)));
+        }
+        heights[f] = static_cast<float>(longest > 0 ? 2 * mesh.areas[f] / std::sqrt(longest) : 0);
+    });
+    return heights;
+}
+
+std::vector<std::uint8_t> find_creases(const mesh::WorkMesh& mesh) {
+    std::vector<std::uint8_t> creases(mesh.face_count(), 0);
+    const double sharp = std::cos(crease_angle);
+    runtime::parallel_for(creases.size(), 16384, [&](std::size_t f) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int32_t g = mesh.neighbors[f][k];
+            const bool both = g >= 0 && mesh.areas[f] > 0 && mesh.areas[static_cast<std::size_t>(g)] > 0;
+            if (g < 0 || (both && dot(mesh.normals[f], mesh.normals[static_cast<std::size_t>(g)]) < sharp)) {
+                creases[f] = static_cast<std::uint8_t>(creases[f] | (1U << k));
+            }
+        }
+    });
+    return creases;
+}
+
+void find_charts(Scene& scene) {
+    const mesh::WorkMesh& mesh = scene.mesh;
+    scene.chart.assign(mesh.face_count(), -2);
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        if (scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[f])].sure) scene.chart[f] = -1;
+    }
+    std::vector<std::uint32_t> stack;
+    std::size_t polls = 0;
+    for (std::size_t seed = 0; seed < mesh.face_count(); ++seed) {
+        if (scene.chart[seed] != -2) continue;
+        const auto id = static_cast<std::int32_t>(scene.chart_count++);
+        scene.chart[seed] = id;
+        stack.assign(1, static_cast<std::uint32_t>(seed));
+        while (!stack.empty()) {
+            scene.control.check_often(polls);
+            const std::uint32_t f = stack.back();
+            stack.pop_back();
+            for (int k = 0; k < 3; ++k) {
+                if (scene.is_crease(f, k)) continue;
+                const auto g = static_cast<std::size_t>(mesh.neighbors[f][static_cast<std::size_t>(k)]);
+                if (scene.chart[g] != -2) continue;
+                scene.chart[g] = id;
+                stack.push_back(static_cast<std::uint32_t>(g));
+            }
+        }
+    }
+}
+
+void find_depths(Scene& scene) {
+    const mesh::WorkMesh& mesh = scene.mesh;
+    constexpr std::uint16_t unknown = 0xffff;
+    scene.depth.assign(mesh.face_count(), unknown);
+    std::vector<std::uint32_t> ring, next;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        bool edge = scene.in_sure_plane(f) || scene.creases[f] != 0;
+        for (std::size_t k = 0; !edge && k < 3; ++k) {
+            edge = scene.in_sure_plane(static_cast<std::size_t>(mesh.neighbors[f][k]));
+        }
+        if (edge) {
+            scene.depth[f] = 0;
+            if (!scene.in_sure_plane(f)) ring.push_back(static_cast<std::uint32_t>(f));
+        }
+    }
+    for (std::uint16_t d = 1; !ring.empty(); d = static_cast<std::uint16_t>(std::min<int>(d + 1, unknown - 1))) {
+        scene.control.check();
+        next.clear();
+        for (const std::uint32_t f : ring) {
+            for (const std::int32_t g : mesh.neighbors[f]) {
+                if (g < 0 || scene.depth[static_cast<std::size_t>(g)] != unknown) continue;
+                scene.depth[static_cast<std::size_t>(g)] = d;
+                next.push_back(static_cast<std::uint32_t>(g));
+            }
+        }
+        ring.swap(next);
+    }
+}
+
+}  // namespace
+
+double dihedral(const mesh::WorkMesh& mesh, std::size_t f, std::size_t g) {
+    if (!(mesh.areas[f] > 0) || !(mesh.areas[g] > 0)) return 0;
+    return angle_between(mesh.normals[f], mesh.normals[g]);
+}
+
+Scene build_scene(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
+    Scene scene{mesh, control, choose_tolerances(mesh), {}, {}, {}, {}, 0, {}};
+    scene.facets = find_facets(mesh, scene.tolerances, control);
+    scene.heights = face_heights(mesh);
+    scene.creases = find_creases(mesh);
+    find_charts(scene);
+    find_depths(scene);
+    return scene;
+}
+
+}  // namespace quadseg::exact

@@ -1,0 +1,128 @@
+#include "exact/search.h"
+
+#include "exact/hypothesis.h"
+#include "runtime/parallel.h"
+#include "runtime/per_thread.h"
+
+#include <algorithm>
+
+namespace quadseg::exact {
+
+namespace {
+
+/// Faces around a failed seed where no other seed is tried: grows with every failure in a row, since free-form patches
+/// would otherwise be tried face by face.
+constexpr std::size_t first_quiet_zone = 8, last_quiet_zone = 256;
+constexpr std::size_t most_seeds_at_once = 8;
+
+/// One smooth chart: seeds farthest from creases first.
+class ChartSearch {
+  public:
+    ChartSearch(const Scene& scene, std::vector<std::uint32_t> faces, bool loose, std::vector<std::uint8_t>& covered,
+                runtime::PerThread<Marks>& marks)
+        : scene_(scene),
+          faces_(std::move(faces)),
+          loose_(loose),
+          covered_(covered),
+          marks_(marks),
+          chart_(scene.chart[faces_.front()]) {
+        std::stable_sort(faces_.begin(), faces_.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return scene_.depth[a] > scene_.depth[b]; });
+    }
+
+    std::vector<Candidate> run() {
+        std::size_t next = 0;
+        while (true) {
+            scene_.control.check();
+            const std::vector<std::uint32_t> seeds = take_seeds(next);
+            if (seeds.empty()) break;
+            std::vector<std::optional<Candidate>> found(seeds.size());
+            runtime::parallel_for(seeds.size(), 1, [&](std::size_t i) {
+                found[i] = find_surface(
+                    scene_, seeds[i], loose_,
+                    [&](std::uint32_t f) { return scene_.chart[f] != chart_ || covered_[f] != explained; },
+                    marks_.local());
+            });
+            bool any = false;
+            for (std::size_t i = 0; i < seeds.size(); ++i) {
+                if (covered_[seeds[i]] == explained) continue;
+                if (found[i] && commit(std::move(*found[i]))) {
+                    any = true;
+                    quiet_zone_ = first_quiet_zone;
+                } else {
+                    hush(seeds[i]);
+                }
+            }
+            at_once_ = any ? std::max<std::size_t>(1, at_once_ / 2) : std::min(most_seeds_at_once, at_once_ * 2);
+        }
+        for (const std::uint32_t f : faces_) {
+            if (covered_[f] == quiet) covered_[f] = 0;
+        }
+        return std::move(candidates_);
+    }
+
+  private:
+    static constexpr std::uint8_t explained = 1, quiet = 2;
+
+    std::vector<std::uint32_t> take_seeds(std::size_t& next) {
+        std::vector<std::uint32_t> seeds;
+        for (; next < faces_.size() && seeds.size() < at_once_; ++next) {
+            if (covered_[faces_[next]] == 0) seeds.push_back(faces_[next]);
+        }
+        return seeds;
+    }
+
+    bool commit(Candidate candidate) {
+        std::size_t fresh = 0;
+        for (const std::uint32_t f : candidate.faces) {
+            if (scene_.chart[f] != chart_) continue;
+            if (covered_[f] != explained) ++fresh;
+            covered_[f] = explained;
+        }
+        if (fresh == 0) return false;
+        candidates_.push_back(std::move(candidate));
+        return true;
+    }
+
+    /// No seeds near a failed one; its faces stay free to be grown into.
+    void hush(std::uint32_t seed) {
+        const Patch patch = collect_patch(
+            scene_, seed, quiet_zone_,
+            [&](std::uint32_t f) { return scene_.chart[f] == chart_ && covered_[f] != explained; }, marks_.local());
+        for (const std::uint32_t f : patch.faces) covered_[f] = quiet;
+        covered_[seed] = quiet;
+        quiet_zone_ = std::min(last_quiet_zone, quiet_zone_ + quiet_zone_ / 2);
+    }
+
+    const Scene& scene_;
+    std::vector<std::uint32_t> faces_;
+    bool loose_;
+    std::vector<std::uint8_t>& covered_;
+    runtime::PerThread<Marks>& marks_;
+    std::int32_t chart_;
+    std::vector<Candidate> candidates_;
+    std::size_t quiet_zone_ = first_quiet_zone, at_once_ = 1;
+};
+
+}  // namespace
+
+std::vector<Candidate> search_surfaces(const Scene& scene, bool loose, std::vector<std::uint8_t>& covered) {
+    std::vector<std::vector<std::uint32_t>> charts(scene.chart_count);
+    for (std::size_t f = 0; f < scene.chart.size(); ++f) {
+        if (scene.chart[f] >= 0 && covered[f] == 0) {
+            charts[static_cast<std::size_t>(scene.chart[f])].push_back(static_cast<std::uint32_t>(f));
+        }
+    }
+    std::vector<std::vector<Candidate>> found(charts.size());
+    runtime::PerThread<Marks> marks;
+    runtime::parallel_for(charts.size(), 1, [&](std::size_t c) {
+        if (!charts[c].empty()) found[c] = ChartSearch(scene, std::move(charts[c]), loose, covered, marks).run();
+    });
+    std::vector<Candidate> all;
+    for (auto& list : found) {
+        for (Candidate& candidate : list) all.push_back(std::move(candidate));
+    }
+    return all;
+}
+
+}  // namespace quadseg::exact

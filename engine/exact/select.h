@@ -1,0 +1,20 @@
+// Settling overlapping claims: every face goes to the candidate that explains it best.
+#pragma once
+
+#include "exact/candidate.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace quadseg::exact {
+
+struct Selection {
+    std::vector<std::int32_t> owner;  ///< index of a candidate, or −1
+    double noise = 0;                 ///< median over the claimed area of the candidates' median distances
+    double largest_step = 0;  ///< tessellation step of this mesh: what the tessellator let a facet turn, radians
+};
+
+/// Candidates that are refused lose all their faces; the vector itself keeps its order and size.
+Selection select(const Scene& scene, const std::vector<Candidate>& candidates);
+
+}  // namespace quadseg::exact

@@ -1,0 +1,84 @@
+#include "exact/tolerances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace quadseg::exact {
+
+namespace {
+
+constexpr int most_digits = 15;
+
+/// Smallest number of significant decimal digits that represents x up to the rounding of the unit frame's round trip.
+int significant_digits(double x, double slack) {
+    const int exponent = static_cast<int>(std::floor(std::log10(std::abs(x))));
+    for (int n = 1; n < most_digits; ++n) {
+        const double quantum = std::pow(10.0, exponent - n + 1);
+        if (std::abs(x - std::round(x / quantum) * quantum) <= slack) return n;
+    }
+    return most_digits;
+}
+
+double quantile(std::vector<double>& values, double share) {
+    const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + k, values.end());
+    return values[static_cast<std::size_t>(k)];
+}
+
+}  // namespace
+
+double coordinate_precision(const mesh::WorkMesh& mesh) {
+    const std::size_t stride = std::max<std::size_t>(1, mesh.vertex_count() / 4096);
+    const double extent = 1 / mesh.frame.scale;
+    // The coordinates come back from the unit frame with an error of a few units in the last place.
+    const double magnitude =
+        std::max({std::abs(mesh.frame.centre.x), std::abs(mesh.frame.centre.y), std::abs(mesh.frame.centre.z), extent});
+    const double slack = 4e-16 * magnitude;
+    std::vector<double> digits, quanta, float_quanta;
+    std::size_t floats = 0, total = 0;
+    for (std::size_t v = 0; v < mesh.vertex_count(); v += stride) {
+        const Vec3 p = mesh.frame.to_input(mesh.positions[v]);
+        for (int k = 0; k < 3; ++k) {
+            const double x = p[k];
+            if (std::abs(x) < 1e-6 * extent) continue;
+            ++total;
+            if (std::abs(x - static_cast<double>(static_cast<float>(x))) <= slack) ++floats;
+            float_quanta.push_back(std::abs(x) * 6e-8);
+            digits.push_back(significant_digits(x, slack));
+            quanta.push_back(std::pow(10.0, std::floor(std::log10(std::abs(x)))));
+        }
+    }
+    if (total == 0) return 1e-16;
+    double precision = 1e-16 * magnitude;
+    if (floats * 100 >= total * 99) {
+        precision = std::max(precision, 0.29 * quantile(float_quanta, 0.5));
+    }
+    // Full doubles show most_digits; a text file shows the digits that it was printed with.
+    const double most = quantile(digits, 0.9);
+    if (most < most_digits - 1) {
+        precision = std::max(precision, 0.29 * quantile(quanta, 0.5) * std::pow(10.0, 1 - most));
+    }
+    return precision * mesh.frame.scale;
+}
+
+Tolerances choose_tolerances(const mesh::WorkMesh& mesh) {
+    Tolerances t;
+    t.diagonal = mesh.frame.diagonal;
+    const double d = t.diagonal;
+    t.precision = coordinate_precision(mesh);
+    const double s = t.precision;
+    // On very dense meshes neighbouring triangles of a curved surface are coplanar within 3e-7: a facet must be flatter
+    // than that.
+    const double mean_edge =
+        std::sqrt(2.3 * mesh.total_area / static_cast<double>(std::max<std::size_t>(1, mesh.face_count())));
+    t.facet = std::max(8 * s, std::min(3e-7 * d, 3e-3 * mean_edge * mean_edge / d));
+    t.fit = std::max(1e-8 * d, 10 * s);
+    t.loose_fit = std::max(5e-7 * d, 20 * s);
+    t.trim = std::max(1e-5 * d, 40 * s);
+    t.gap = 8 * t.trim;
+    t.border = 4 * t.trim;
+    return t;
+}
+
+}  // namespace quadseg::exact

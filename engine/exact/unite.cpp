@@ -1,0 +1,216 @@
+#include "exact/unite.h"
+
+#include "exact/face_fit.h"
+#include "exact/grow.h"
+#include "surface/fit.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace quadseg::exact {
+
+namespace {
+
+constexpr std::size_t sample = 1000;
+constexpr std::size_t scrap_faces = 8;
+constexpr double enclosing_share = 0.34;
+
+std::vector<std::vector<std::uint32_t>> faces_of_regions(const Explained& state) {
+    std::vector<std::vector<std::uint32_t>> faces(state.surface.size());
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        if (state.region[f] >= 0)
+            faces[static_cast<std::size_t>(state.region[f])].push_back(static_cast<std::uint32_t>(f));
+    }
+    return faces;
+}
+
+struct Border {
+    std::int32_t a, b;  ///< a < b
+    double length = 0;
+    double bend = 0;  ///< largest dihedral angle along it
+};
+
+std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
+    std::map<std::pair<std::int32_t, std::int32_t>, Border> borders;
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        for (int k = 0; k < 3; ++k) {
+            const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
+            if (g < 0) continue;
+            const std::int32_t a = state.region[f], b = state.region[static_cast<std::size_t>(g)];
+            if (a < 0 || b < 0 || a >= b) continue;
+            Border& border = borders.try_emplace({a, b}, Border{a, b}).first->second;
+            border.length += norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
+            border.bend = std::max(border.bend, dihedral(scene.mesh, f, static_cast<std::size_t>(g)));
+        }
+    }
+    std::vector<Border> list;
+    for (const auto& [key, border] : borders) list.push_back(border);
+    return list;
+}
+
+class Uniter {
+  public:
+    Uniter(const Scene& scene, double largest_step, Explained& state)
+        : scene_(scene), largest_step_(largest_step), state_(state), faces_(faces_of_regions(state)) {
+        parent_.resize(state.surface.size());
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
+
+    void run() {
+        for (bool any = true; any;) {
+            any = false;
+            for (const Border& border : borders_of(scene_, state_)) {
+                scene_.control.check();
+                const std::int32_t a = find(border.a), b = find(border.b);
+                if (a != b && try_unite(a, b, border)) any = true;
+            }
+            for (std::int32_t& r : state_.region) {
+                if (r >= 0) r = find(r);
+            }
+        }
+    }
+
+  private:
+    std::int32_t find(std::int32_t r) {
+        while (parent_[static_cast<std::size_t>(r)] != r) r = parent_[static_cast<std::size_t>(r)];
+        return r;
+    }
+    std::vector<std::uint32_t>& faces(std::int32_t r) { return faces_[static_cast<std::size_t>(r)]; }
+    Surface& surface(std::int32_t r) { return state_.surface[static_cast<std::size_t>(r)]; }
+
+    bool try_unite(std::int32_t a, std::int32_t b, const Border& border) {
+        if (faces(a).size() < faces(b).size()) std::swap(a, b);
+        const double tolerance = std::max(3e-6 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision);
+        if (lies_on(b, surface(a), tolerance, 0.9)) {
+            join(a, b, surface(a));
+            return true;
+        }
+        // Small pieces say too little alone; together they may fit one surface, if the border between them is smooth.
+        if (faces(b).size() > 64 || border.bend > std::max(largest_step_, 0.1)) return false;
+        const Surface* curved = &surface(a);
+        if (curved->type == SurfaceType::plane) return false;
+        std::vector<std::uint32_t> both = faces(a);
+        both.insert(both.end(), faces(b).begin(), faces(b).end());
+        const std::vector<Vec3> points = vertices_of(scene_, both, sample, marks_);
+        const surface::SurfaceFit fit = surface::refine(*curved, {points, {}, {}}, {});
+        if (!fit.ok || fit.q90 > scene_.tolerances.loose_fit || fit.max > scene_.tolerances.trim) return false;
+        if (!lies_on(a, fit.surface, scene_.tolerances.trim, 1) ||
+            !lies_on(b, fit.surface, scene_.tolerances.trim, 1)) {
+            return false;
+        }
+        join(a, b, fit.surface);
+        return true;
+    }
+
+    /// `share` of the vertices within the tolerance, and nearly all of the area with a fitting normal.
+    bool lies_on(std::int32_t region, const Surface& s, double tolerance, double share) {
+        const FaceFitter fitter(scene_, s);
+        const std::vector<std::uint32_t>& list = faces(region);
+        const std::size_t stride = std::max<std::size_t>(1, list.size() / sample);
+        std::size_t vertices = 0, on = 0, tested = 0, turned = 0, steep = 0;
+        for (std::size_t i = 0; i < list.size(); i += stride) {
+            for (const std::uint32_t v : scene_.mesh.faces[list[i]]) {
+                ++vertices;
+                if (fitter.vertex_distance(v) <= tolerance) ++on;
+            }
+            const FaceFit fit = fitter(list[i]);
+            ++tested;
+            if (fit.angle > fit.allowed) ++turned;
+            if (s.type != SurfaceType::plane && fit.step > 1.7 * largest_step_) ++steep;
+        }
+        return static_cast<double>(on) >= share * static_cast<double>(vertices) && 10 * turned <= tested &&
+               10 * steep <= tested;
+    }
+
+    void join(std::int32_t a, std::int32_t b, const Surface& s) {
+        state_.surface[static_cast<std::size_t>(a)] = s;
+        faces(a).insert(faces(a).end(), faces(b).begin(), faces(b).end());
+        faces(b).clear();
+        parent_[static_cast<std::size_t>(b)] = a;
+    }
+
+    const Scene& scene_;
+    double largest_step_;
+    Explained& state_;
+    std::vector<std::vector<std::uint32_t>> faces_;
+    std::vector<std::int32_t> parent_;
+    Marks marks_;
+};
+
+/// The neighbouring region with the longest common border, its share of the perimeter.
+struct Host {
+    std::int32_t region = -1;
+    double share = 0;
+    double bend = 1e9;
+};
+
+std::vector<Host> hosts_of(const Scene& scene, const Explained& state, const std::vector<std::uint32_t>& piece) {
+    std::map<std::int32_t, Host> hosts;
+    double perimeter = 0;
+    std::vector<std::uint32_t> sorted = piece;
+    std::sort(sorted.begin(), sorted.end());
+    for (const std::uint32_t f : piece) {
+        for (int k = 0; k < 3; ++k) {
+            const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
+            if (g >= 0 && std::binary_search(sorted.begin(), sorted.end(), static_cast<std::uint32_t>(g))) continue;
+            const double length = norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
+            perimeter += length;
+            if (g < 0 || state.region[static_cast<std::size_t>(g)] < 0) continue;
+            Host& host = hosts[state.region[static_cast<std::size_t>(g)]];
+            host.region = state.region[static_cast<std::size_t>(g)];
+            host.share += length;
+            host.bend = std::min(host.bend, dihedral(scene.mesh, f, static_cast<std::size_t>(g)));
+        }
+    }
+    std::vector<Host> list;
+    for (auto& [region, host] : hosts) {
+        host.share /= std::max(perimeter, 1e-300);
+        list.push_back(host);
+    }
+    return list;
+}
+
+bool explains(const Scene& scene, const Explained& state, std::int32_t region,
+              const std::vector<std::uint32_t>& piece) {
+    const FaceFitter fitter(scene, state.surface[static_cast<std::size_t>(region)]);
+    return std::all_of(piece.begin(), piece.end(),
+                       [&](std::uint32_t f) { return fitter.distance(f) <= scene.tolerances.border; });
+}
+
+}  // namespace
+
+void unite_equal(const Scene& scene, double largest_step, Explained& state) {
+    Uniter(scene, largest_step, state).run();
+    separate_parts(scene, state);
+}
+
+void absorb_scraps(const Scene& scene, Explained& state) {
+    std::vector<std::vector<std::uint32_t>> pieces = free_components(scene, state, false);
+    const std::size_t free_pieces = pieces.size();
+    for (auto& faces : faces_of_regions(state)) {
+        const bool tiny = faces.size() <= 2 && !faces.empty();
+        if (tiny) pieces.push_back(std::move(faces));
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        scene.control.check();
+        const std::vector<std::uint32_t>& piece = pieces[i];
+        if (piece.size() > scrap_faces) continue;
+        std::vector<Host> hosts = hosts_of(scene, state, piece);
+        std::stable_sort(hosts.begin(), hosts.end(), [](const Host& a, const Host& b) { return a.share > b.share; });
+        const auto host = std::find_if(hosts.begin(), hosts.end(), [&](const Host& h) {
+            return h.share >= enclosing_share && explains(scene, state, h.region, piece);
+        });
+        std::int32_t target = host != hosts.end() ? host->region : -1;
+        if (target < 0 && i < free_pieces && piece.size() < 4 && !hosts.empty()) {
+            target = std::min_element(hosts.begin(), hosts.end(), [](const Host& a, const Host& b) {
+                         return a.bend < b.bend;
+                     })->region;
+        }
+        if (target < 0) continue;
+        for (const std::uint32_t f : piece) state.region[f] = target;
+    }
+    separate_parts(scene, state);
+}
+
+}  // namespace quadseg::exact

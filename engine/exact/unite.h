@@ -1,0 +1,14 @@
+// Uniting what is one: adjacent regions on equal surfaces, and scraps that a neighbour explains.
+#pragma once
+
+#include "exact/explained.h"
+
+namespace quadseg::exact {
+
+/// Adjacent regions become one where the smaller lies on the surface of the larger, or one surface fits both.
+void unite_equal(const Scene& scene, double largest_step, Explained& state);
+
+/// Pieces of a few faces, free or barely supported, join the neighbour that encloses and explains them.
+void absorb_scraps(const Scene& scene, Explained& state);
+
+}  // namespace quadseg::exact
