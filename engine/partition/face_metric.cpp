@@ -12,13 +12,9 @@ struct MeanEnergy {
     double distance, normal;
 };
 
-MeanEnergy mean_energy(const mesh::WorkMesh& mesh, std::size_t face, const quadric::Proxy& proxy,
+/// Corners relative to the proxy's origin.
+MeanEnergy mean_energy(const quadric::Proxy& proxy, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& n,
                        bool normalised) noexcept {
-    const auto& v = mesh.faces[face];
-    const Vec3 a = mesh.positions[v[0]] - proxy.origin;
-    const Vec3 b = mesh.positions[v[1]] - proxy.origin;
-    const Vec3 c = mesh.positions[v[2]] - proxy.origin;
-    const Vec3& n = mesh.normals[face];
     const Vec3 ga = quadric::gradient(proxy.c, a), gb = quadric::gradient(proxy.c, b),
                gc = quadric::gradient(proxy.c, c);
 
@@ -42,7 +38,14 @@ MeanEnergy mean_energy(const mesh::WorkMesh& mesh, std::size_t face, const quadr
     return {square * inverse * inverse, deviation};
 }
 
-/// std::min with a NaN in the first place gives the second: NaN counts as the worst value.
+MeanEnergy mean_energy(const mesh::WorkMesh& mesh, std::size_t face, const quadric::Proxy& proxy,
+                       bool normalised) noexcept {
+    const auto& v = mesh.faces[face];
+    return mean_energy(proxy, mesh.positions[v[0]] - proxy.origin, mesh.positions[v[1]] - proxy.origin,
+                       mesh.positions[v[2]] - proxy.origin, mesh.normals[face], normalised);
+}
+
+/// NaN and infinity count as the worst value.
 double finite(double x) noexcept {
     return x < std::numeric_limits<double>::max() ? x : std::numeric_limits<double>::max();
 }
@@ -54,6 +57,14 @@ quadric::TriangleEnergy face_energy(const mesh::WorkMesh& mesh, std::size_t face
     const double area = mesh.areas[face];
     if (!(area > 0)) return {};
     const MeanEnergy mean = mean_energy(mesh, face, proxy, normalised);
+    return {mean.distance * area, mean.normal * area};
+}
+
+quadric::TriangleEnergy corner_energy(const quadric::Proxy& proxy, const Vec3& a, const Vec3& b, const Vec3& c,
+                                      const Vec3& n, double area, bool normalised) noexcept {
+    if (!(area > 0)) return {};
+    const Vec3& o = proxy.origin;
+    const MeanEnergy mean = mean_energy(proxy, a - o, b - o, c - o, n, normalised);
     return {mean.distance * area, mean.normal * area};
 }
 

@@ -22,6 +22,10 @@ struct FaceMetric {
 quadric::TriangleEnergy face_energy(const mesh::WorkMesh& mesh, std::size_t face, const quadric::Proxy& proxy,
                                     bool normalised) noexcept;
 
+/// The same for any triangle with unit normal n.
+quadric::TriangleEnergy corner_energy(const quadric::Proxy& proxy, const Vec3& a, const Vec3& b, const Vec3& c,
+                                      const Vec3& n, double area, bool normalised) noexcept;
+
 /// E / area of a face: what floods, seeds and insertions are ordered by, so that slivers and large triangles are judged
 /// alike. 0 for a face without area; never NaN (an overflow counts as the largest double).
 double error_density(const mesh::WorkMesh& mesh, std::size_t face, const quadric::Proxy& proxy,

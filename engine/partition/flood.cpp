@@ -56,13 +56,13 @@ std::uint64_t Flood::Queue::pop() {
     return top;
 }
 
-Flood::Flood(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features)
-    : mesh_(mesh), features_(features), offers_(mesh.face_count(), Offer{0, 0, closed}) {}
+Flood::Flood(const Passage& passage) : passage_(passage), offers_(passage.mesh->face_count(), Offer{0, 0, closed}) {}
 
 void Flood::grow(std::size_t face, std::size_t region, float priority, std::span<const SeededRegion> regions,
                  const FaceMetric& metric, const Labels& labels, const std::vector<double>& density) {
+    const mesh::WorkMesh& mesh = *passage_.mesh;
     for (std::size_t k = 0; k < 3; ++k) {
-        const std::int32_t neighbor = open_neighbor(mesh_, features_, face, k);
+        const std::int32_t neighbor = passage_.across(face, k);
         if (neighbor == mesh::no_face) continue;
         const auto u = static_cast<std::size_t>(neighbor);
         Offer& offer = offers_[u];
@@ -70,9 +70,9 @@ void Flood::grow(std::size_t face, std::size_t region, float priority, std::span
         if (offer.region == closed || offer.region == index) continue;
         Offer mine;
         mine.region = index;
-        if (mesh_.areas[u] > 0) {
+        if (mesh.areas[u] > 0) {
             const SeededRegion& r = regions[region];
-            mine.density = labels[u] == r.label ? density[u] : error_density(mesh_, u, *r.proxy, metric);
+            mine.density = labels[u] == r.label ? density[u] : error_density(mesh, u, *r.proxy, metric);
             mine.priority = priority_of(mine.density);
         } else {
             // A face without area has no error of its own: it is neither a wall nor a short cut.
@@ -101,7 +101,7 @@ void Flood::run(std::span<const SeededRegion> regions, std::span<const std::uint
         for (const SeededRegion& r : regions) {
             const std::size_t seed = r.seed;
             offers_[seed].region = closed;
-            if (labels[seed] != r.label) density[seed] = error_density(mesh_, seed, *r.proxy, metric);
+            if (labels[seed] != r.label) density[seed] = error_density(*passage_.mesh, seed, *r.proxy, metric);
             labels[seed] = r.label;
         }
         for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -127,8 +127,8 @@ void Flood::run(std::span<const SeededRegion> regions, std::span<const std::uint
     close();
 }
 
-std::size_t open_components(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features, Labels& groups) {
-    groups.assign(mesh.face_count(), -1);
+std::size_t open_components(const Passage& passage, Labels& groups) {
+    groups.assign(passage.mesh->face_count(), -1);
     std::int32_t count = 0;
     std::vector<std::uint32_t> stack;
     for (std::size_t start = 0; start < groups.size(); ++start) {
@@ -139,7 +139,7 @@ std::size_t open_components(const mesh::WorkMesh& mesh, const mesh::FeatureEdges
             const std::size_t f = stack.back();
             stack.pop_back();
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t u = open_neighbor(mesh, features, f, k);
+                const std::int32_t u = passage.across(f, k);
                 if (u == mesh::no_face || groups[static_cast<std::size_t>(u)] >= 0) continue;
                 groups[static_cast<std::size_t>(u)] = count;
                 stack.push_back(static_cast<std::uint32_t>(u));

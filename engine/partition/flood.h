@@ -1,8 +1,8 @@
 // Distortion-minimising flooding (section 4.3.1; Cohen-Steiner, Alliez, Desbrun 2004).
 #pragma once
 
-#include "mesh/features.h"
 #include "partition/face_metric.h"
+#include "partition/leaves.h"
 #include "partition/regions.h"
 #include "runtime/run_control.h"
 
@@ -12,16 +12,9 @@
 
 namespace quadseg::partition {
 
-/// Face across edge k of f that a region may grow into; no_face at borders and features.
-inline std::int32_t open_neighbor(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features, std::size_t f,
-                                  std::size_t k) noexcept {
-    if (features != nullptr && ((*features)[f] >> k & 1U) != 0) return mesh::no_face;
-    return mesh.neighbors[f][k];
-}
-
 /// Groups of faces that can reach each other without crossing borders or features, by first face: the floor of the
 /// number of regions. Returns their number.
-std::size_t open_components(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features, Labels& groups);
+std::size_t open_components(const Passage& passage, Labels& groups);
 
 /// A proxy and the face from which it grows.
 struct SeededRegion {
@@ -37,7 +30,7 @@ struct SeededRegion {
 /// from a third of the entries. Ties are broken by face, then by label.
 class Flood {
   public:
-    Flood(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features);
+    explicit Flood(const Passage& passage);
 
     /// Distributes `faces` among `regions`; all other faces keep their labels and are not crossed. Seeds must be
     /// distinct and among `faces`, and every face must be reachable from a seed within `faces`: true for the union of
@@ -70,8 +63,7 @@ class Flood {
     void grow(std::size_t face, std::size_t region, float priority, std::span<const SeededRegion> regions,
               const FaceMetric& metric, const Labels& labels, const std::vector<double>& density);
 
-    const mesh::WorkMesh& mesh_;
-    const mesh::FeatureEdges* features_;
+    Passage passage_;
     Queue queue_;
     std::vector<Offer> offers_;  ///< best offer so far; region `closed` outside the current flood or when taken
 };

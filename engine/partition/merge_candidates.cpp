@@ -1,33 +1,11 @@
 #include "partition/merge_candidates.h"
 
-#include "partition/flood.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace quadseg::partition {
-
-std::vector<RegionPair> adjacent_regions(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features,
-                                         const Labels& labels) {
-    std::vector<std::uint64_t> keys;
-    for (std::size_t f = 0; f < labels.size(); ++f) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::int32_t u = open_neighbor(mesh, features, f, k);
-            if (u == mesh::no_face || labels[static_cast<std::size_t>(u)] <= labels[f]) continue;
-            keys.push_back(static_cast<std::uint64_t>(labels[f]) << 32U |
-                           static_cast<std::uint32_t>(labels[static_cast<std::size_t>(u)]));
-        }
-    }
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    std::vector<RegionPair> pairs;
-    pairs.reserve(keys.size());
-    for (const std::uint64_t key : keys) {
-        pairs.push_back({static_cast<std::int32_t>(key >> 32U), static_cast<std::int32_t>(key & 0xFFFFFFFFU)});
-    }
-    return pairs;
-}
 
 quadric::RegionFit fit_union(const mesh::WorkMesh& mesh, const MergeableRegion& a, const MergeableRegion& b,
                              const FitFunction& fit) {
@@ -41,7 +19,7 @@ quadric::RegionFit fit_union(const mesh::WorkMesh& mesh, const MergeableRegion& 
 std::vector<MergeCandidate> MergeCandidates::evaluate(const mesh::WorkMesh& mesh, std::span<const RegionPair> pairs,
                                                       std::span<const MergeableRegion> regions, const FitFunction& fit,
                                                       const runtime::RunControl& control) {
-    const auto region = [&](std::int32_t r) -> const MergeableRegion& { return regions[static_cast<std::size_t>(r)]; };
+    const auto region = [&](std::uint32_t r) -> const MergeableRegion& { return regions[r]; };
     const auto stamps = [&](const RegionPair& p) {
         const auto [low, high] = std::minmax(region(p.a).stamp, region(p.b).stamp);
         return std::pair{low, high};

@@ -1,7 +1,7 @@
 // Pairs of adjacent regions and what their merging would cost (section 4.3.3).
 #pragma once
 
-#include "mesh/features.h"
+#include "partition/pair_merge.h"
 #include "partition/regions.h"
 #include "runtime/run_control.h"
 
@@ -16,15 +16,6 @@ namespace quadseg::partition {
 
 /// How the method in use fits a region.
 using FitFunction = std::function<quadric::RegionFit(const quadric::TriangleSoup&)>;
-
-struct RegionPair {
-    std::int32_t a = 0, b = 0;  ///< a < b
-    friend bool operator==(const RegionPair&, const RegionPair&) = default;
-};
-
-/// Pairs of regions that share an edge that is no feature, ascending.
-std::vector<RegionPair> adjacent_regions(const mesh::WorkMesh& mesh, const mesh::FeatureEdges* features,
-                                         const Labels& labels);
 
 struct MergeCandidate {
     RegionPair pair;
