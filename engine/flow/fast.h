@@ -9,11 +9,14 @@
 namespace quadseg::flow {
 
 struct FastOptions {
-    std::size_t regions = 0;    ///< merge down to this many; 0: until nothing is worth merging
+    std::size_t regions = 0;  ///< merge down to this many; 0: until nothing is worth merging
+    double tolerance = 0;     ///< > 0: merge while the RMS distance of the union stays below, relative to the diagonal
     double misfit_angle = 4.4;  ///< degrees: a merge may cost ω·angle² per area of the smaller side (clean meshes)
     double noise_factor = 10;   ///< κ: and this many times the noise of the degrees of freedom that it saves
     bool ladder = true;         ///< plane < sphere < cylinder < revolution < quadric with mild factors
+    double leaf_angle = 8;      ///< degrees between a face and the mean normal of its leaf
     int relax_steps = 6;
+    int split_rounds = 0;             ///< of {dissolve the regions of highest energy into leaves, merge again, relax}
     std::size_t smallest_region = 4;  ///< regions of fewer faces join a neighbour at the end
     /// F' flags: only these faces take part; borders of the others are barriers; their labels come out −1. Empty: all.
     std::span<const std::uint8_t> active = {};

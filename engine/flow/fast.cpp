@@ -1,0 +1,191 @@
+#include "flow/fast.h"
+
+#include "partition/absorb.h"
+#include "partition/leaves.h"
+#include "partition/pair_merge.h"
+#include "partition/relax.h"
+#include "quadric/energy.h"
+#include "quadric/ladder.h"
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace quadseg::flow {
+namespace {
+
+using partition::Labels;
+using partition::Passage;
+
+/// Noise of the normals as energy a degree of freedom absorbs: median over faces of 3/4 ω |t| |n_t − mean n of its
+/// neighbours|²; on clean meshes about 0.
+double normal_noise(const mesh::WorkMesh& mesh, double weight) {
+    constexpr std::size_t most_samples = 16384;
+    const std::size_t stride = 1 + mesh.face_count() / most_samples;
+    std::vector<double> samples;
+    for (std::size_t f = 0; f < mesh.face_count(); f += stride) {
+        Vec3 mean;
+        for (const std::int32_t g : mesh.neighbors[f]) {
+            if (g >= 0) mean += mesh.normals[static_cast<std::size_t>(g)];
+        }
+        if (!(mesh.areas[f] > 0) || !(squared_norm(mean) > 0)) continue;
+        samples.push_back(mesh.areas[f] * squared_norm(mesh.normals[f] - normalized(mean)));
+    }
+    if (samples.empty()) return 0;
+    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
+    std::nth_element(samples.begin(), middle, samples.end());
+    return 0.75 * weight * *middle;
+}
+
+class FastFlow {
+  public:
+    FastFlow(const FlowInput& input, const FastOptions& fast)
+        : mesh_(input.mesh),
+          control_(input.control),
+          fast_(fast),
+          weight_(input.options.weight),
+          passage_{&input.mesh, input.features, fast.active} {
+        const double tolerance = fast.tolerance * mesh_.frame.diagonal;
+        scorer_ = [weight = weight_, ladder = fast.ladder, tolerance](const quadric::Moments& m) {
+            const quadric::LadderFit fit = quadric::fit_ladder(m, weight, ladder);
+            partition::RegionScore score{fit.cost, fit.energy, fit.dof};
+            if (tolerance > 0) score.distance = quadric::moment_energy(fit.c, m).distance;
+            return score;
+        };
+    }
+
+    FlowResult run() {
+        try {
+            start_from_parts();
+            if (fast_.regions > 0 && count_ > fast_.regions && passage_.barriers != nullptr) {
+                // The number asked for weighs more than the features.
+                passage_.barriers = nullptr;
+                start_from_parts();
+            }
+            grow();
+            merge_down();
+            if (!result_.partial) improve();
+        } catch (const runtime::Stopped&) {
+            result_.partial = true;
+        }
+        result_.regions = partition::compact(labels_);
+        result_.labels = std::move(labels_);
+        if (result_.partial) {
+            result_.stop = control_.should_stop() ? StopReason::cancelled : StopReason::deadline;
+        } else if (fast_.regions > 0) {
+            result_.stop = result_.regions == fast_.regions ? StopReason::regions : StopReason::converged;
+        } else {
+            result_.stop = fast_.tolerance > 0 ? StopReason::tolerance : StopReason::converged;
+        }
+        return std::move(result_);
+    }
+
+  private:
+    /// The coarsest partition there is, so that a flow stopped early has a result.
+    void start_from_parts() {
+        labels_.assign(mesh_.face_count(), 0);
+        for (std::size_t f = 0; f < labels_.size(); ++f) {
+            if (!passage_.is_active(f)) labels_[f] = -1;
+        }
+        count_ = partition::connected_parts(passage_, labels_);
+    }
+
+    void grow() {
+        control_.check();
+        partition::LeafOptions options;
+        options.angle = fast_.leaf_angle;
+        partition::Leaves leaves = partition::grow_leaves(passage_, options, control_);
+        // Merging needs something to choose from.
+        const std::size_t wanted = std::min(2 * fast_.regions, mesh_.face_count());
+        if (leaves.count < wanted) {
+            options.smallest_coplanar = 0;
+            options.largest = std::max<std::size_t>(1, mesh_.face_count() / (2 * wanted));
+            leaves = partition::grow_leaves(passage_, options, control_);
+        }
+        if (leaves.count < fast_.regions) {
+            options.largest = 1;
+            leaves = partition::grow_leaves(passage_, options, control_);
+        }
+        leaves_ = std::move(leaves.labels);
+        labels_ = leaves_;
+        count_ = leaves.count;
+    }
+
+    partition::MergeRules rules() const {
+        partition::MergeRules rules;
+        rules.target = fast_.regions;
+        const double angle = fast_.misfit_angle * std::numbers::pi / 180;
+        rules.misfit = weight_ * angle * angle;
+        rules.noise = fast_.noise_factor * normal_noise(mesh_, weight_);
+        rules.tolerance = fast_.tolerance * mesh_.frame.diagonal;
+        return rules;
+    }
+
+    /// Merges the present regions.
+    void merge_down() {
+        control_.report(Phase::fine, 0.3, count_);
+        partition::Merging merging =
+            partition::merge_pairs(partition::measure_regions(mesh_, labels_, count_, scorer_, control_),
+                                   partition::region_pairs(passage_, labels_, control_), rules(), scorer_, control_);
+        for (std::int32_t& label : labels_) {
+            if (label >= 0) label = merging.region_of[static_cast<std::size_t>(label)];
+        }
+        count_ = merging.regions.size();
+        if (result_.history.empty()) result_.history = std::move(merging.history);
+        result_.partial = merging.stopped;
+        control_.report(Phase::fine, 0.6, count_);
+    }
+
+    partition::Relaxed relax() {
+        partition::RelaxOptions options;
+        options.steps = fast_.relax_steps;
+        options.fit.weight = weight_;
+        options.fit.plane_tolerance_per_area = true;
+        partition::Relaxed relaxed = partition::relax(passage_, labels_, count_, options, control_);
+        result_.partial = relaxed.stopped;
+        result_.energies.push_back(relaxed.energy);
+        return relaxed;
+    }
+
+    void improve() {
+        partition::Relaxed relaxed = relax();
+        if (result_.partial) return;
+        control_.report(Phase::fine, 0.8, count_, relaxed.energy);
+        if (fast_.regions == 0 && fast_.smallest_region > 1) {
+            partition::AbsorbOptions options;
+            options.smallest_region = fast_.smallest_region;
+            options.weight = weight_;
+            count_ = partition::absorb_small(passage_, labels_, count_, relaxed.fits, options, control_);
+        }
+    }
+
+    const mesh::WorkMesh& mesh_;
+    const runtime::RunControl& control_;
+    const FastOptions& fast_;
+    double weight_;
+    Passage passage_;
+    partition::Scorer scorer_;
+    Labels leaves_, labels_;
+    std::size_t count_ = 0;
+    FlowResult result_;
+};
+
+}  // namespace
+
+FastOptions fast_options(const Options& options) {
+    FastOptions fast;
+    fast.regions = options.regions;
+    fast.tolerance = options.tolerance;
+    fast.ladder = options.regions == 0;
+    // misfit is an angle squared; detail divides the energy.
+    fast.misfit_angle /= std::sqrt(options.detail);
+    fast.noise_factor /= options.detail;
+    return fast;
+}
+
+FlowResult run_fast(const FlowInput& input, const FastOptions& fast) {
+    return FastFlow(input, fast).run();
+}
+
+}  // namespace quadseg::flow

@@ -1,0 +1,26 @@
+// Clean-up: regions too small to stand alone join the neighbour that explains them best.
+#pragma once
+
+#include "partition/leaves.h"
+#include "partition/regions.h"
+#include "quadric/region_fit.h"
+#include "runtime/run_control.h"
+
+#include <cstddef>
+#include <span>
+
+namespace quadseg::partition {
+
+struct AbsorbOptions {
+    std::size_t smallest_region = 4;  ///< regions of fewer faces are absorbed
+    double smallest_area = 0;         ///< and those of less area, unit frame
+    double weight = 0.5;              ///< ω of the energy by which the neighbour is chosen
+};
+
+/// Labels 0 … count−1 with one fit each; returns the number of regions, renumbered by first face. Regions without a
+/// neighbour across the passage stay.
+std::size_t absorb_small(const Passage& passage, Labels& labels, std::size_t count,
+                         std::span<const quadric::RegionFit> fits, const AbsorbOptions& options,
+                         const runtime::RunControl& control);
+
+}  // namespace quadseg::partition

@@ -1,0 +1,298 @@
+#include "partition/relax.h"
+
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+namespace quadseg::partition {
+namespace {
+
+constexpr std::size_t face_grain = 8192;
+constexpr std::size_t work_grain = 1024;
+constexpr int most_sweeps = 200;
+constexpr std::int32_t orphan = -2;
+/// Energy densities below this differ by rounding only.
+constexpr double density_floor = 1e-15;
+
+class Relaxer {
+  public:
+    Relaxer(const Passage& passage, Labels& labels, std::size_t count, const RelaxOptions& options,
+            const runtime::RunControl& control)
+        : passage_(passage),
+          mesh_(*passage.mesh),
+          labels_(labels),
+          count_(count),
+          options_(options),
+          control_(control),
+          dirty_(count, 1),
+          stamp_(labels.size(), 0) {
+        result_.fits.resize(count);
+    }
+
+    Relaxed run() {
+        Labels best = labels_;
+        try {
+            refit();
+            Relaxed kept = result_;
+            for (int step = 0; step < options_.steps; ++step) {
+                const double before = kept.energy;
+                if (!move_faces()) break;
+                repair_connectivity();
+                refit();
+                if (!(result_.energy < before)) break;
+                best = labels_;
+                kept = result_;
+                if (!(result_.energy < (1 - options_.stop) * before)) break;
+            }
+            result_ = std::move(kept);
+        } catch (const runtime::Stopped&) {
+            result_.stopped = true;
+        }
+        labels_ = std::move(best);
+        return std::move(result_);
+    }
+
+  private:
+    double energy(std::size_t f, std::int32_t label) const noexcept {
+        return quadric::triangle_energy(result_.fits[static_cast<std::size_t>(label)].proxy, mesh_.corner(f, 0),
+                                        mesh_.corner(f, 1), mesh_.corner(f, 2), mesh_.normals[f], mesh_.areas[f])
+            .hybrid(options_.fit.weight);
+    }
+    std::int32_t label_across(std::size_t f, std::size_t k) const noexcept {
+        const std::int32_t g = passage_.across(f, k);
+        return g < 0 ? -1 : labels_[static_cast<std::size_t>(g)];
+    }
+
+    /// Fits the dirty regions and sums the energy. Needs regions_ up to date.
+    void refit() {
+        regions_ = region_faces(labels_, count_);
+        std::vector<std::uint32_t> work;
+        for (std::uint32_t r = 0; r < count_; ++r) {
+            if (dirty_[r] != 0 && regions_.size(r) > 0) work.push_back(r);
+        }
+        // Largest first, so that one big region does not start last.
+        std::sort(work.begin(), work.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return regions_.size(a) != regions_.size(b) ? regions_.size(a) > regions_.size(b) : a < b;
+        });
+        runtime::parallel_for(work.size(), 1, [&](std::size_t i) {
+            control_.check();
+            const std::size_t r = work[i];
+            GatheredRegion gathered;
+            gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
+            result_.fits[r] = quadric::fit_region(gathered.soup(), options_.fit);
+        });
+        result_.energy = 0;
+        for (std::size_t r = 0; r < count_; ++r) {
+            if (regions_.size(r) == 0) result_.fits[r] = {};
+            result_.energy += result_.fits[r].total;
+        }
+    }
+
+    std::vector<std::uint32_t> border_faces() const {
+        const std::size_t faces = labels_.size();
+        std::vector<std::vector<std::uint32_t>> found((faces + face_grain - 1) / face_grain);
+        runtime::parallel_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t f = begin; f < end; ++f) {
+                const std::int32_t own = labels_[f];
+                if (own < 0) continue;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t other = label_across(f, k);
+                    if (other < 0 || other == own) continue;
+                    // Between two regions that did not change nothing has become cheaper.
+                    if (dirty_[static_cast<std::size_t>(own)] == 0 && dirty_[static_cast<std::size_t>(other)] == 0)
+                        continue;
+                    found[begin / face_grain].push_back(static_cast<std::uint32_t>(f));
+                    break;
+                }
+            }
+        });
+        std::vector<std::uint32_t> border;
+        for (const auto& part : found) border.insert(border.end(), part.begin(), part.end());
+        return border;
+    }
+
+    std::int32_t best_label(std::size_t f) const noexcept {
+        const std::int32_t own = labels_[f];
+        std::int32_t best = own;
+        double lowest = -1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int32_t other = label_across(f, k);
+            if (other < 0 || other == own || other == best) continue;
+            if (lowest < 0) lowest = energy(f, own) * (1 - options_.margin) - density_floor * mesh_.areas[f];
+            const double e = energy(f, other);
+            if (e < lowest || (e == lowest && best != own && other < best)) {
+                lowest = e;
+                best = other;
+            }
+        }
+        return best;
+    }
+
+    /// Jacobi sweeps over the border until no face gains: E is a sum over faces, so all faces may decide at once.
+    bool move_faces() {
+        std::vector<std::uint32_t> work = border_faces();
+        std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
+        std::vector<std::int32_t> decided;
+        bool moved = false;
+        for (int sweep = 0; sweep < most_sweeps && !work.empty(); ++sweep) {
+            decided.resize(work.size());
+            runtime::parallel_blocks(work.size(), work_grain, [&](std::size_t begin, std::size_t end) {
+                control_.check();
+                for (std::size_t i = begin; i < end; ++i) decided[i] = best_label(work[i]);
+            });
+            work = apply(work, decided);
+            moved = moved || !work.empty();
+        }
+        return moved;
+    }
+
+    /// Moves the faces and returns those that the moves may concern.
+    std::vector<std::uint32_t> apply(const std::vector<std::uint32_t>& work, const std::vector<std::int32_t>& decided) {
+        std::vector<std::uint32_t> concerned;
+        ++sweep_stamp_;
+        const auto concern = [&](std::size_t f) {
+            if (stamp_[f] == sweep_stamp_) return;
+            stamp_[f] = sweep_stamp_;
+            concerned.push_back(static_cast<std::uint32_t>(f));
+        };
+        for (std::size_t i = 0; i < work.size(); ++i) {
+            const std::size_t f = work[i];
+            if (decided[i] == labels_[f]) continue;
+            dirty_[static_cast<std::size_t>(labels_[f])] = 1;
+            dirty_[static_cast<std::size_t>(decided[i])] = 1;
+            labels_[f] = decided[i];
+            concern(f);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = passage_.across(f, k);
+                if (g >= 0 && labels_[static_cast<std::size_t>(g)] >= 0) concern(static_cast<std::size_t>(g));
+            }
+        }
+        return concerned;
+    }
+
+    /// Of every changed region the largest part stays; the rest is flooded again from around it.
+    void repair_connectivity() {
+        regions_ = region_faces(labels_, count_);
+        std::vector<std::uint32_t> changed;
+        for (std::uint32_t r = 0; r < count_; ++r) {
+            if (dirty_[r] != 0 && regions_.size(r) > 1) changed.push_back(r);
+        }
+        ++sweep_stamp_;
+        std::vector<std::vector<std::uint32_t>> cut(changed.size());
+        runtime::parallel_for(changed.size(), 1, [&](std::size_t i) {
+            control_.check();
+            cut[i] = smaller_parts(changed[i]);
+        });
+        std::vector<std::uint32_t> orphans;
+        for (const auto& part : cut) orphans.insert(orphans.end(), part.begin(), part.end());
+        if (!orphans.empty()) flood(orphans);
+    }
+
+    /// Faces of region r outside its part of largest area.
+    std::vector<std::uint32_t> smaller_parts(std::uint32_t r) {
+        const std::uint32_t* const faces = regions_.face.data() + regions_.begin[r];
+        const std::size_t size = regions_.size(r);
+        std::vector<std::uint32_t> order;
+        std::vector<std::size_t> part_begin;
+        std::vector<double> part_area;
+        order.reserve(size);
+        for (std::size_t i = 0; i < size; ++i) {
+            if (stamp_[faces[i]] == sweep_stamp_) continue;
+            part_begin.push_back(order.size());
+            double area = 0;
+            stamp_[faces[i]] = sweep_stamp_;
+            order.push_back(faces[i]);
+            for (std::size_t head = part_begin.back(); head < order.size(); ++head) {
+                const std::size_t f = order[head];
+                area += mesh_.areas[f];
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t g = passage_.across(f, k);
+                    if (g < 0) continue;
+                    const auto u = static_cast<std::size_t>(g);
+                    if (labels_[u] != static_cast<std::int32_t>(r) || stamp_[u] == sweep_stamp_) continue;
+                    stamp_[u] = sweep_stamp_;
+                    order.push_back(static_cast<std::uint32_t>(u));
+                }
+            }
+            part_area.push_back(area);
+        }
+        if (part_begin.size() < 2) return {};
+        const std::size_t largest =
+            static_cast<std::size_t>(std::max_element(part_area.begin(), part_area.end()) - part_area.begin());
+        part_begin.push_back(order.size());
+        order.erase(order.begin() + static_cast<std::ptrdiff_t>(part_begin[largest]),
+                    order.begin() + static_cast<std::ptrdiff_t>(part_begin[largest + 1]));
+        return order;
+    }
+
+    struct Claim {
+        double energy;
+        std::uint32_t face;
+        std::int32_t label;
+        friend bool operator<(const Claim& a, const Claim& b) noexcept {
+            if (a.energy != b.energy) return a.energy > b.energy;
+            if (a.face != b.face) return a.face > b.face;
+            return a.label > b.label;
+        }
+    };
+
+    void flood(const std::vector<std::uint32_t>& orphans) {
+        std::vector<std::int32_t> former(orphans.size());
+        for (std::size_t i = 0; i < orphans.size(); ++i) {
+            former[i] = labels_[orphans[i]];
+            labels_[orphans[i]] = orphan;
+        }
+        std::priority_queue<Claim> claims;
+        const auto claim = [&](std::size_t f, std::int32_t label) {
+            const double e = energy(f, label);
+            claims.push({std::isnan(e) ? std::numeric_limits<double>::max() : e, static_cast<std::uint32_t>(f), label});
+        };
+        for (const std::uint32_t f : orphans) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (const std::int32_t label = label_across(f, k); label >= 0) claim(f, label);
+            }
+        }
+        for (std::size_t polled = 0; !claims.empty();) {
+            control_.check_often(polled);
+            const Claim c = claims.top();
+            claims.pop();
+            if (labels_[c.face] != orphan) continue;
+            labels_[c.face] = c.label;
+            dirty_[static_cast<std::size_t>(c.label)] = 1;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = passage_.across(c.face, k);
+                if (g >= 0 && labels_[static_cast<std::size_t>(g)] == orphan)
+                    claim(static_cast<std::size_t>(g), c.label);
+            }
+        }
+        // Parts that were cut off from everything already in the input stay as they are.
+        for (std::size_t i = 0; i < orphans.size(); ++i) {
+            if (labels_[orphans[i]] == orphan) labels_[orphans[i]] = former[i];
+        }
+    }
+
+    const Passage& passage_;
+    const mesh::WorkMesh& mesh_;
+    Labels& labels_;
+    std::size_t count_;
+    const RelaxOptions& options_;
+    const runtime::RunControl& control_;
+    std::vector<std::uint8_t> dirty_;
+    std::vector<std::uint32_t> stamp_;
+    std::uint32_t sweep_stamp_ = 0;
+    RegionFaces regions_;
+    Relaxed result_;
+};
+
+}  // namespace
+
+Relaxed relax(const Passage& passage, Labels& labels, std::size_t count, const RelaxOptions& options,
+              const runtime::RunControl& control) {
+    return Relaxer(passage, labels, count, options, control).run();
+}
+
+}  // namespace quadseg::partition

@@ -1,0 +1,36 @@
+// Boundary relaxation: Lloyd's iteration in which only faces at region borders move, to a neighbour's surface that
+// explains them better. 3 to 10 times less work than flooding, and never a higher energy from merged labels.
+#pragma once
+
+#include "partition/leaves.h"
+#include "partition/regions.h"
+#include "quadric/region_fit.h"
+#include "runtime/run_control.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace quadseg::partition {
+
+struct RelaxOptions {
+    int steps = 6;         ///< of {move faces, repair connectivity, refit what changed}
+    double margin = 1e-4;  ///< a face moves when it gains more than this share of its energy
+    double stop = 1e-3;    ///< ends when a step lowers the energy by less than this share
+    quadric::RegionFitOptions fit;
+    /// Price of border length: > 0 makes borders short (Potts), as noise asks for.
+    double border_price = 0;
+};
+
+struct Relaxed {
+    std::vector<quadric::RegionFit> fits;  ///< one a label; regions without faces keep a default fit
+    double energy = 0;                     ///< Σ fits[r].total
+    bool stopped = false;                  ///< by control: the best labels so far
+};
+
+/// Improves labels 0 … count−1 (−1: left out) in place; regions that were edge-connected stay so; a label may lose all
+/// its faces. Keeps the state of lowest energy. Jacobi sweeps: the same result at any thread count.
+Relaxed relax(const Passage& passage, Labels& labels, std::size_t count, const RelaxOptions& options,
+              const runtime::RunControl& control);
+
+}  // namespace quadseg::partition
