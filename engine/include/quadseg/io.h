@@ -13,7 +13,8 @@ namespace quadseg {
 
 /// Reads OFF, OBJ, PLY (ascii, binary of both endians) or STL (ascii, binary), recognised by content, then by
 /// extension. Polygons are cut into triangles that follow one another; STL corners at the same position are welded.
-/// Throws Error file_open, file_format (line or byte named), invalid_mesh, cancelled. Thread-safe.
+/// Messages name the line or byte. Throws Error file_open, file_format, invalid_mesh, empty_mesh (no face at all),
+/// memory_limit, cancelled. Thread-safe.
 Mesh read_mesh(const std::string& path, Context* context = nullptr);
 
 /// Colours and labels of the faces of a PLY.
