@@ -1,149 +1,125 @@
 #include "quadric/region_fit.h"
 
+#include "quadric/face_packs.h"
 #include "quadric/fit.h"
+#include "quadric/sheets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 namespace quadseg::quadric {
 namespace {
 
-constexpr double floor_share = 0.05;  // of the median |∇f⁰(c_t)| (MATH.md §3)
-
 class RegionFitter {
   public:
-    RegionFitter(const TriangleSoup& region, const RegionFitOptions& options) : soup_(region), options_(options) {
-        Vec3 moment{};
-        for (std::size_t t = 0; t < region.size(); ++t) {
-            const double a = region.areas[t];
-            if (!(a > 0)) continue;
-            area_ += a;
-            moment += (corner(t, 0) + corner(t, 1) + corner(t, 2)) * (a / 3);
-        }
-        if (!(area_ > 0)) return;
-        centre_ = moment / area_;
-        Moments m;
-        for (std::size_t t = 0; t < region.size(); ++t) {
-            if (!(region.areas[t] > 0)) continue;
-            accumulate(m, corner(t, 0) - centre_, corner(t, 1) - centre_, corner(t, 2) - centre_, region.normals[t],
-                       region.areas[t]);
-        }
-        const double radius = spread(m).radius;
-        if (!(radius > 0)) {
-            area_ = 0;
-            return;
-        }
-        scale_ = 1 / radius;
-        moments_ = scaled(m, scale_);
-        weight_ = scaled_weight(options.weight, scale_);
-    }
+    RegionFitter(const TriangleSoup& region, const RegionFitOptions& options)
+        : soup_(region),
+          options_(options),
+          faces_(region),
+          moments_(faces_.moments()),
+          weight_(scaled_weight(options.weight, faces_.scale())) {}
 
     RegionFit run() {
-        if (!(area_ > 0)) return degenerate();
-        RegionFit best = planar();
-        const double tolerance = options_.plane_tolerance * (options_.plane_tolerance_per_area ? area_ : 1);
-        if (best.total <= tolerance) return best;
-        offer(fit_taubin(moments_), best);
-        if (options_.best_of && weight_ > 0) offer(fit_least_squares(moments_, weight_), best);
-        return best;
+        if (!(faces_.area() > 0)) return degenerate();
+        fit_planar();
+        const double tolerance = options_.plane_tolerance * (options_.plane_tolerance_per_area ? faces_.area() : 1);
+        if (best_.total <= tolerance) return best_;
+        if (options_.best_of) {
+            fit_best();
+        } else {
+            fit_two_steps();
+        }
+        return best_;
     }
 
   private:
-    Vec3 corner(std::size_t t, std::size_t k) const { return soup_.corners[3 * t + k]; }
-
     RegionFit degenerate() const {
         RegionFit fit;
-        if (soup_.size() > 0) {
-            fit.proxy = plane_proxy(corner(0, 0), soup_.normals[0]);
-        } else {
-            fit.proxy = plane_proxy({}, {0, 0, 1});
-        }
+        fit.proxy = soup_.size() > 0 ? plane_proxy(soup_.corners[0], soup_.normals[0]) : plane_proxy({}, {0, 0, 1});
         return fit;
     }
 
-    RegionFit planar() const {
-        RegionFit fit;
-        const QuadricFit local = fit_plane(moments_, weight_);
-        fit.proxy = plane_proxy(centre_, {local.c[1], local.c[2], local.c[3]});
-        fit.proxy.c[0] = local.c[0] / scale_;
-        evaluate(fit);
-        return fit;
-    }
-
-    void evaluate(RegionFit& fit) const {
-        for (std::size_t t = 0; t < soup_.size(); ++t) {
-            const TriangleEnergy e =
-                triangle_energy(fit.proxy, corner(t, 0), corner(t, 1), corner(t, 2), soup_.normals[t], soup_.areas[t]);
-            fit.energy.distance += e.distance;
-            fit.energy.normal += e.normal;
-        }
+    /// Energies of the local frame in the unit frame: E_d scales by s⁴, E_n by s².
+    void set_energy(RegionFit& fit, double distance, double normal) const {
+        const double s2 = faces_.scale() * faces_.scale();
+        fit.energy = {distance / (s2 * s2), normal / s2};
         fit.total = fit.energy.hybrid(options_.weight);
-        fit.valid = is_valid(fit.proxy, soup_);
     }
 
-    /// Takes a start, improves it by reweighting, and keeps what is better than `best`.
-    void offer(QuadricFit start, RegionFit& best) {
-        Coefficients c = start.c;
-        if (options_.best_of || options_.reweightings == 0 || !(weight_ > 0)) consider(c, best);
-        for (int k = 0; k < options_.reweightings && weight_ > 0; ++k) {
-            const Proxy proxy = proxy_of(c);
-            const Moments weighted = reweighted(proxy);
-            c = fit_least_squares(weighted, weight_).c;
-            if (options_.best_of || k + 1 == options_.reweightings) consider(c, best);
+    void fit_planar() {
+        Candidate plane;
+        plane.c = fit_plane(moments_, weight_).c;
+        const TriangleEnergy energy = moment_energy(plane.c, moments_);
+        set_energy(best_, energy.distance, energy.normal);
+        const Vec3 normal{plane.c[1], plane.c[2], plane.c[3]};
+        best_.proxy = plane_proxy(faces_.centre(), normal);
+        best_.proxy.c[0] = plane.c[0] / faces_.scale();
+        // A normal on the wrong side costs 2 an area at least: most planes need no look at the faces.
+        if (energy.normal > 2 * tolerated_share * moments_.area[0]) {
+            faces_.evaluate(plane);
+            best_.valid = plane.against <= tolerated_share * moments_.area[0];
         }
     }
 
-    Proxy proxy_of(const Coefficients& local) {
-        Proxy proxy;
-        proxy.origin = centre_;
-        proxy.c = from_local(local, {}, scale_);
-        double mean = 0;
-        lengths_.clear();
-        for (std::size_t t = 0; t < soup_.size(); ++t) {
-            const Vec3 x = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0 - centre_;
-            const double length = norm(gradient(proxy.c, x));
-            lengths_.push_back(length);
-            mean += soup_.areas[t] * length;
+    /// Takes the candidate if it is better: valid ones first, then by true energy.
+    void offer(Candidate& candidate) {
+        if (!candidate.usable) return;
+        faces_.evaluate(candidate);
+        if (!candidate.usable) return;
+        RegionFit fit;
+        set_energy(fit, candidate.distance, candidate.normal);
+        if (!(fit.total < best_.total) && (best_.valid || !options_.best_of)) return;
+        fit.valid = candidate.against <= tolerated_share * moments_.area[0] &&
+                    faces_.share_on_other_sheet(candidate.c) <= tolerated_share;
+        if (options_.best_of && fit.valid != best_.valid) {
+            if (!fit.valid) return;
+        } else if (!(fit.total < best_.total)) {
+            return;
         }
-        mean /= area_;
-        if (!(mean > 0) || !std::isfinite(mean)) return plane_proxy(centre_, {0, 0, 1});
-        for (double& v : proxy.c) v /= mean;
-        for (double& v : lengths_) v /= mean;
-        sorted_ = lengths_;
-        const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
-        std::nth_element(sorted_.begin(), middle, sorted_.end());
-        proxy.gradient_floor = std::max(1e-6, floor_share * *middle);
-        return proxy;
+        fit.proxy.origin = faces_.centre();
+        fit.proxy.c = from_local(candidate.c, {}, faces_.scale());
+        for (double& v : fit.proxy.c) v /= faces_.scale();  // |∇f| as it is in the local frame
+        fit.proxy.gradient_floor = candidate.gradient_floor;
+        best_ = fit;
     }
 
-    Moments reweighted(const Proxy& proxy) const {
-        Moments m;
-        for (std::size_t t = 0; t < soup_.size(); ++t) {
-            if (!(soup_.areas[t] > 0)) continue;
-            const double w = 1 / std::max(lengths_[t], proxy.gradient_floor);
-            accumulate(m, (corner(t, 0) - centre_) * scale_, (corner(t, 1) - centre_) * scale_,
-                       (corner(t, 2) - centre_) * scale_, soup_.normals[t], soup_.areas[t] * scale_ * scale_, w * w, w);
+    /// The paper's two steps: Taubin, then the weighted linear system.
+    void fit_two_steps() {
+        Candidate candidate = faces_.prepare(fit_taubin(moments_).c);
+        for (int k = 0; k < options_.reweightings && candidate.usable && weight_ > 0; ++k) {
+            Moments weighted;
+            faces_.reweigh(candidate, weighted);
+            candidate = faces_.prepare(fit_least_squares(weighted, weight_).c);
         }
-        return m;
+        offer(candidate);
     }
 
-    void consider(const Coefficients& local, RegionFit& best) {
-        RegionFit candidate;
-        candidate.proxy = proxy_of(local);
-        evaluate(candidate);
-        if (!std::isfinite(candidate.total)) return;
-        const bool preferred =
-            options_.best_of && candidate.valid != best.valid ? candidate.valid : candidate.total < best.total;
-        if (preferred) best = candidate;
+    /// Two starts that fail in different places (Taubin on near planes, unit weights on cones), each also reweighted.
+    void fit_best() {
+        Candidate taubin = faces_.prepare(fit_taubin(moments_).c);
+        offer(taubin);
+        if (!(weight_ > 0)) return;
+        Candidate linear = faces_.prepare(fit_least_squares(moments_, weight_).c);
+        offer(linear);
+        for (int k = 0; k < options_.reweightings; ++k) {
+            if (!linear.usable) return;
+            if (!taubin.usable) taubin = linear;
+            Moments weighted_taubin, weighted_linear;
+            faces_.reweigh(taubin, linear, weighted_taubin, weighted_linear);
+            taubin = faces_.prepare(fit_least_squares(weighted_taubin, weight_).c);
+            linear = faces_.prepare(fit_least_squares(weighted_linear, weight_).c);
+            offer(taubin);
+            offer(linear);
+        }
     }
 
     const TriangleSoup& soup_;
     const RegionFitOptions& options_;
-    Vec3 centre_;
-    double area_ = 0, scale_ = 1, weight_ = 0;
-    Moments moments_;
-    std::vector<double> lengths_, sorted_;
+    FacePacks faces_;
+    const Moments& moments_;
+    double weight_;
+    RegionFit best_;
 };
 
 }  // namespace
@@ -164,6 +140,16 @@ TriangleEnergy triangle_energy(const Proxy& proxy, const Vec3& v0, const Vec3& v
 
 RegionFit fit_region(const TriangleSoup& region, const RegionFitOptions& options) {
     return RegionFitter(region, options).run();
+}
+
+bool is_valid(const Proxy& proxy, const TriangleSoup& region) {
+    FacePacks faces(region);
+    if (!(faces.area() > 0)) return true;
+    Candidate local;
+    local.c = to_local(proxy.c, faces.centre() - proxy.origin, faces.scale());
+    faces.evaluate(local);
+    return local.against <= tolerated_share * faces.moments().area[0] &&
+           (proxy.planar() || faces.share_on_other_sheet(local.c) <= tolerated_share);
 }
 
 }  // namespace quadseg::quadric

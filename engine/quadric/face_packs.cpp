@@ -1,0 +1,226 @@
+#include "quadric/face_packs.h"
+
+#include "quadric/normal_equations.h"
+#include "quadric/sheets.h"
+#include "quadric/triangle_moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace quadseg::quadric {
+namespace {
+
+constexpr double floor_share = 0.05;        // of the median |∇f⁰(c_t)| (MATH.md §3)
+constexpr std::size_t median_sample = 512;  // faces, evenly spaced, that the median is taken of
+
+struct LaneMoments {
+    Pack area[35]{};
+    Pack normal[12]{};
+
+    void add(const Pack* t, const Pack* n, const Pack& w2, const Pack& w1) noexcept {
+        for (std::size_t i = 0; i < 35; ++i) area[i] += w2 * t[i];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Pack w = w1 * n[axis];
+            for (std::size_t k = 0; k < 4; ++k) normal[4 * axis + k] += w * t[k];
+        }
+    }
+    void sum(Moments& m) const noexcept {
+        for (std::size_t i = 0; i < 35; ++i) m.area[i] = horizontal_sum(area[i]);
+        for (std::size_t i = 0; i < 12; ++i) m.normal[i] = horizontal_sum(normal[i]);
+    }
+};
+
+struct PackGradient {
+    Pack x, y, z;
+    PackGradient(const Coefficients& c, const Pack& px, const Pack& py, const Pack& pz) noexcept
+        : x(2 * c[4] * px + c[5] * py + c[6] * pz + c[1]),
+          y(c[5] * px + 2 * c[7] * py + c[8] * pz + c[2]),
+          z(c[6] * px + c[8] * py + 2 * c[9] * pz + c[3]) {}
+};
+
+void centroid(const FacePack& f, Pack* x) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) x[k] = (f.corners[k] + f.corners[k + 3] + f.corners[k + 6]) * (1.0 / 3);
+}
+
+bool takes_part(double area) noexcept {
+    return area > 0 && area <= std::numeric_limits<double>::max();
+}
+
+}  // namespace
+
+FacePacks::FacePacks(const TriangleSoup& region) : faces_(region.size()) {
+    // Centroid, and a radius good enough to scale with, about a point of the region: no cancellation far from 0.
+    Vec3 reference, first;
+    double second = 0;
+    for (std::size_t t = 0; t < faces_; ++t) {
+        const double a = region.areas[t];
+        if (!takes_part(a)) continue;
+        const Vec3* const corner = &region.corners[3 * t];
+        if (area_ == 0) reference = corner[0];
+        const Vec3 u = corner[0] - reference, v = corner[1] - reference, w = corner[2] - reference;
+        area_ += a;
+        first += (u + v + w) * a;
+        second += a * (squared_norm(u) + squared_norm(v) + squared_norm(w));
+    }
+    if (!(area_ > 0)) return;
+    const Vec3 mean = first / (3 * area_);
+    const double radius = std::sqrt(second / (3 * area_) - squared_norm(mean));
+    if (!(radius > 0) || !std::isfinite(radius) || !std::isfinite(area_)) {
+        area_ = 0;
+        return;
+    }
+    centre_ = reference + mean;
+    scale_ = 1 / radius;
+
+    packs_.resize((faces_ + lanes - 1) / lanes);
+    LaneMoments sum;
+    Pack normal_area{};
+    const double area_scale = scale_ * scale_;
+    for (std::size_t p = 0; p < packs_.size(); ++p) {
+        FacePack& f = packs_[p];
+        const std::size_t begin = p * lanes, count = std::min(lanes, faces_ - begin);
+        for (std::size_t l = 0; l < count; ++l) {
+            const std::size_t t = begin + l;
+            if (!takes_part(region.areas[t])) continue;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 u = (region.corners[3 * t + k] - centre_) * scale_;
+                f.corners[3 * k][l] = u.x;
+                f.corners[3 * k + 1][l] = u.y;
+                f.corners[3 * k + 2][l] = u.z;
+            }
+            f.normal[0][l] = region.normals[t].x;
+            f.normal[1][l] = region.normals[t].y;
+            f.normal[2][l] = region.normals[t].z;
+            f.area[l] = region.areas[t] * area_scale;
+        }
+        Pack t[35];
+        triangle_moments(&f.corners[0], f.area, t);
+        const Pack one = Pack{} + 1.0;
+        sum.add(t, f.normal, one, one);
+        normal_area += f.area * (f.normal[0] * f.normal[0] + f.normal[1] * f.normal[1] + f.normal[2] * f.normal[2]);
+    }
+    sum.sum(moments_);
+    moments_.total_area = moments_.area[0];
+    moments_.normal_area = horizontal_sum(normal_area);
+}
+
+Candidate FacePacks::prepare(const Coefficients& c) {
+    Candidate result;
+    result.c = c;
+    const double orientation = dot(c, normal_vector(moments_));
+    lengths_.resize(packs_.size() * lanes);
+    Pack mean_pack{};
+    for (std::size_t p = 0; p < packs_.size(); ++p) {
+        Pack x[3], length;
+        centroid(packs_[p], x);
+        const PackGradient g(c, x[0], x[1], x[2]);
+        square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
+        mean_pack += packs_[p].area * length;
+        for (std::size_t l = 0; l < lanes; ++l) lengths_[p * lanes + l] = length[l];
+    }
+    const double mean = horizontal_sum(mean_pack) / moments_.area[0];
+    if (!(mean > 0) || !(mean <= std::numeric_limits<double>::max())) return result;
+    const std::size_t stride = (faces_ + median_sample - 1) / median_sample;
+    sample_.clear();
+    for (std::size_t t = 0; t < faces_; t += stride) sample_.push_back(lengths_[t]);
+    const auto middle = sample_.begin() + static_cast<std::ptrdiff_t>(sample_.size() / 2);
+    std::nth_element(sample_.begin(), middle, sample_.end());
+    const double scale = 1 / mean;
+    for (double& v : result.c) v *= orientation < 0 ? -scale : scale;
+    result.gradient_floor = std::max(1e-6, floor_share * *middle * scale);
+    result.usable = std::isfinite(orientation);
+    return result;
+}
+
+void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments& out_first,
+                        Moments& out_second) const {
+    LaneMoments sum_first, sum_second;
+    for (const FacePack& f : packs_) {
+        Pack x[3], t[35];
+        centroid(f, x);
+        triangle_moments(&f.corners[0], f.area, t);
+        const auto add = [&](const Candidate& candidate, LaneMoments& sum) {
+            const PackGradient g(candidate.c, x[0], x[1], x[2]);
+            Pack length;
+            square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
+            maximum(length, Pack{} + candidate.gradient_floor, length);
+            const Pack w1 = 1.0 / length, w2 = w1 * w1;
+            sum.add(t, f.normal, w2, w1);
+        };
+        add(first, sum_first);
+        add(second, sum_second);
+    }
+    for (Moments* m : {&out_first, &out_second}) {
+        *m = moments_;
+        (m == &out_first ? sum_first : sum_second).sum(*m);
+    }
+}
+
+void FacePacks::reweigh(const Candidate& candidate, Moments& out) const {
+    Moments unused;
+    reweigh(candidate, candidate, out, unused);
+}
+
+void FacePacks::evaluate(Candidate& candidate) const {
+    const Coefficients& c = candidate.c;
+    const Pack floor = Pack{} + candidate.gradient_floor;
+    Pack distance{}, normal{}, against{};
+    for (const FacePack& f : packs_) {
+        const Pack* const v = &f.corners[0];
+        const PackGradient g0(c, v[0], v[1], v[2]), g1(c, v[3], v[4], v[5]), g2(c, v[6], v[7], v[8]);
+        // f = c0 + u·(b + ∇f)/2; middles of edges from end values and gradients (see triangle_energy).
+        const Pack f0 = 0.5 * (v[0] * (g0.x + c[1]) + v[1] * (g0.y + c[2]) + v[2] * (g0.z + c[3])) + c[0];
+        const Pack f1 = 0.5 * (v[3] * (g1.x + c[1]) + v[4] * (g1.y + c[2]) + v[5] * (g1.z + c[3])) + c[0];
+        const Pack f2 = 0.5 * (v[6] * (g2.x + c[1]) + v[7] * (g2.y + c[2]) + v[8] * (g2.z + c[3])) + c[0];
+        const Pack m01 = 0.5 * (f0 + f1) + 0.125 * ((g0.x - g1.x) * (v[3] - v[0]) + (g0.y - g1.y) * (v[4] - v[1]) +
+                                                    (g0.z - g1.z) * (v[5] - v[2]));
+        const Pack m12 = 0.5 * (f1 + f2) + 0.125 * ((g1.x - g2.x) * (v[6] - v[3]) + (g1.y - g2.y) * (v[7] - v[4]) +
+                                                    (g1.z - g2.z) * (v[8] - v[5]));
+        const Pack m20 = 0.5 * (f2 + f0) + 0.125 * ((g2.x - g0.x) * (v[0] - v[6]) + (g2.y - g0.y) * (v[1] - v[7]) +
+                                                    (g2.z - g0.z) * (v[2] - v[8]));
+        const Pack corners = f0 + f1 + f2, middles = m01 + m12 + m20;
+        const Pack integral = 7.0 * (f0 * f0 + f1 * f1 + f2 * f2) - corners * corners -
+                              8.0 * (f0 * m12 + f1 * m20 + f2 * m01) +
+                              16.0 * (middles * middles + m01 * m01 + m12 * m12 + m20 * m20);
+        const Pack sx = g0.x + g1.x + g2.x, sy = g0.y + g1.y + g2.y, sz = g0.z + g1.z + g2.z;
+        Pack length;
+        square_root((sx * sx + sy * sy + sz * sz) * (1.0 / 9), length);
+        maximum(length, floor, length);
+        const Pack r = 1.0 / length;
+        distance += f.area * integral * (r * r);
+        const Pack &nx = f.normal[0], &ny = f.normal[1], &nz = f.normal[2];
+        Pack misfit{};
+        const auto add_square = [&](const Pack& x, const Pack& y, const Pack& z) { misfit += x * x + y * y + z * z; };
+        add_square(g0.x * r - nx, g0.y * r - ny, g0.z * r - nz);
+        add_square(g1.x * r - nx, g1.y * r - ny, g1.z * r - nz);
+        add_square(g2.x * r - nx, g2.y * r - ny, g2.z * r - nz);
+        add_square(sx * r - 3.0 * nx, sy * r - 3.0 * ny, sz * r - 3.0 * nz);
+        normal += f.area * misfit;
+        Pack along;
+        where_positive(sx * nx + sy * ny + sz * nz, f.area, along);
+        against += f.area - along;
+    }
+    candidate.distance = std::max(0.0, horizontal_sum(distance) * (1.0 / 180));
+    candidate.normal = std::max(0.0, horizontal_sum(normal) * (1.0 / 12));
+    candidate.against = horizontal_sum(against);
+    if (!std::isfinite(candidate.distance + candidate.normal)) candidate.usable = false;
+}
+
+double FacePacks::share_on_other_sheet(const Coefficients& c) const {
+    const Sheets sheets(c);
+    if (sheets.kind() == Sheets::Kind::connected) return 0;
+    if (sheets.kind() == Sheets::Kind::imaginary) return 1;
+    double second = 0, whole = 0;
+    for (const FacePack& f : packs_) {
+        Pack x[3];
+        centroid(f, x);
+        for (std::size_t l = 0; l < lanes; ++l) {
+            whole += f.area[l];
+            if (sheets.foot_on_second_side(c, {x[0][l], x[1][l], x[2][l]})) second += f.area[l];
+        }
+    }
+    return std::min(second, whole - second) / whole;
+}
+
+}  // namespace quadseg::quadric

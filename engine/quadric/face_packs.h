@@ -1,0 +1,61 @@
+// A region's faces in packs, in the centred, scaled frame of the region, and the passes over them that a fit is made
+// of.
+#pragma once
+
+#include "quadric/moments.h"
+#include "quadric/monomials.h"
+#include "quadric/pack.h"
+#include "quadric/region_fit.h"
+
+#include <span>
+#include <vector>
+
+namespace quadseg::quadric {
+
+struct FacePack {
+    Pack corners[9];  ///< x y z of three corners
+    Pack normal[3];
+    Pack area;  ///< 0 in the lanes that are filled up and for faces without area
+};
+
+/// What the weights of the second step and the true energies need to know of a candidate.
+struct Candidate {
+    Coefficients c{};                 ///< local frame, oriented, mean |∇f(c_t)| 1
+    double gradient_floor = 1e-6;     ///< 5 % of the region's median |∇f(c_t)|
+    double distance = 0, normal = 0;  ///< true energies in the local frame
+    double against = 0;               ///< area where n·∇f(c_t) ≤ 0
+    bool usable = false;
+};
+
+class FacePacks {
+  public:
+    /// Finds the frame, fills the packs and the unit-weight moments. Faces of no (or no finite) area do not take part.
+    explicit FacePacks(const TriangleSoup& region);
+
+    double area() const noexcept { return area_; }  ///< in the unit frame
+    const Vec3& centre() const noexcept { return centre_; }
+    double scale() const noexcept { return scale_; }              ///< local = (x − centre) · scale
+    const Moments& moments() const noexcept { return moments_; }  ///< local frame; normal2 is not filled
+
+    /// Orients and scales c to mean |∇f(c_t)| 1 and finds the gradient floor. Not usable if not finite or zero.
+    Candidate prepare(const Coefficients& c);
+    /// Moments of the second step for two candidates in one pass: weights 1/|∇f⁰|² and 1/|∇f⁰| (appendix).
+    void reweigh(const Candidate& first, const Candidate& second, Moments& out_first, Moments& out_second) const;
+    /// Same for one.
+    void reweigh(const Candidate& candidate, Moments& out) const;
+    /// True energies with the one-point gradient of c itself, and the area against it.
+    void evaluate(Candidate& candidate) const;
+    /// Share of the area whose foot points lie on the smaller side of two-sheeted quadrics; 0 if on one connected
+    /// sheet, 1 if there is no real surface.
+    double share_on_other_sheet(const Coefficients& c) const;
+
+  private:
+    std::vector<FacePack> packs_;
+    std::vector<double> lengths_, sample_;
+    Vec3 centre_;
+    double area_ = 0, scale_ = 1;
+    std::size_t faces_ = 0;
+    Moments moments_;
+};
+
+}  // namespace quadseg::quadric

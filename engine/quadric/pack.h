@@ -1,0 +1,71 @@
+// Eight doubles handled as one value, a triangle a lane: the loops over a region's faces are written on packs.
+//
+// The width is part of the result (sums are made lane by lane, then across in a fixed order), so it is the same for
+// every instruction set; a compiler splits a pack into the registers that it has.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace quadseg::quadric {
+
+inline constexpr std::size_t lanes = 8;
+
+#if defined(__GNUC__)
+using Pack = double __attribute__((vector_size(lanes * sizeof(double))));
+
+inline void maximum(const Pack& a, const Pack& b, Pack& out) noexcept {
+    out = a > b ? a : b;
+}
+/// value where test > 0, else 0.
+inline void where_positive(const Pack& test, const Pack& value, Pack& out) noexcept {
+    out = test > Pack{} ? value : Pack{};
+}
+#else
+struct Pack {
+    alignas(64) double lane[lanes] = {};
+    double& operator[](std::size_t i) noexcept { return lane[i]; }
+    double operator[](std::size_t i) const noexcept { return lane[i]; }
+};
+#define QUADSEG_PACK_OPERATOR(op)                                    \
+    inline Pack operator op(const Pack& a, const Pack& b) noexcept { \
+        Pack r;                                                      \
+        for (std::size_t i = 0; i < lanes; ++i) r[i] = a[i] op b[i]; \
+        return r;                                                    \
+    }                                                                \
+    inline Pack operator op(const Pack& a, double b) noexcept {      \
+        Pack r;                                                      \
+        for (std::size_t i = 0; i < lanes; ++i) r[i] = a[i] op b;    \
+        return r;                                                    \
+    }                                                                \
+    inline Pack operator op(double a, const Pack& b) noexcept {      \
+        Pack r;                                                      \
+        for (std::size_t i = 0; i < lanes; ++i) r[i] = a op b[i];    \
+        return r;                                                    \
+    }
+QUADSEG_PACK_OPERATOR(+)
+QUADSEG_PACK_OPERATOR(-)
+QUADSEG_PACK_OPERATOR(*)
+QUADSEG_PACK_OPERATOR(/)
+#undef QUADSEG_PACK_OPERATOR
+inline Pack& operator+=(Pack& a, const Pack& b) noexcept {
+    return a = a + b;
+}
+inline void maximum(const Pack& a, const Pack& b, Pack& out) noexcept {
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = a[i] > b[i] ? a[i] : b[i];
+}
+inline void where_positive(const Pack& test, const Pack& value, Pack& out) noexcept {
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = test[i] > 0 ? value[i] : 0;
+}
+#endif
+
+inline void square_root(const Pack& a, Pack& out) noexcept {
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = std::sqrt(a[i]);
+}
+/// The lanes' sum, in an order that does not depend on the compiler.
+inline double horizontal_sum(const Pack& a) noexcept {
+    return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
+}
+
+}  // namespace quadseg::quadric
