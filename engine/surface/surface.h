@@ -6,8 +6,15 @@
 
 #include "math/vec3.h"
 #include "quadric/monomials.h"
+#include "surface/quadric_projector.h"
 
 namespace quadseg::surface {
+
+/// Conventions beyond segmentation.h. Cone: the one nappe from the apex along the axis. Torus: the circle of radius
+/// `minor_radius` around (major radius, 0) in the half plane (ρ ≥ 0, z), turned about the axis; a negative major radius
+/// gives the lemon (the inner part of a spindle torus), minor > major > 0 the apple. Plane: `outward` has no meaning,
+/// the axis is the outward normal. General quadrics, blend and freeform: ∇f of the coefficients is the outward
+/// direction.
 
 /// Signed distance of p to the surface: positive on the side the mesh normal points to (Surface::outward). Exact for
 /// every type: closed forms for plane … torus, |p − foot_point| with the sign of f otherwise.
@@ -17,22 +24,9 @@ Vec3 normal_at(const Surface& s, const Vec3& p);
 /// Nearest point of the surface. Where it is not unique (axis, centre) a fixed choice is made.
 Vec3 foot_point(const Surface& s, const Vec3& p);
 
-/// Nearest point of a general quadric f = 0 by the bracketed root of MATH.md §4; all types, degenerate ones included.
-/// Returns p itself where the quadric has no real point.
-class QuadricProjector {
-  public:
-    explicit QuadricProjector(const quadric::Coefficients& c);
-    Vec3 foot_point(const Vec3& p) const;
-    bool has_real_points() const noexcept;
-
-  private:
-    Vec3 axes_[3], centre_;
-    double d_[3]{}, b_[3]{}, c0_ = 0, scale_ = 1;
-    bool planar_ = false, empty_ = false;
-};
-
-/// Coefficients of a typed surface (plane, sphere, cylinder, cone exactly; torus: those already in s), oriented by
-/// `outward`, with |∇f| = 1 on the surface where that is possible (mean elsewhere).
+/// Coefficients of a typed surface (plane, sphere, cylinder, cone exactly; torus and others: those already in s),
+/// oriented by `outward`, with |∇f| = 1 on the surface; cone: |∇f| = distance to the apex (callers that know the region
+/// scale its mean to 1).
 quadric::Coefficients to_coefficients(const Surface& s);
 
 /// Type from the eigenvalues of the quadratic form (section 4.4.2), with parameters (centre, axes, semi-axes).

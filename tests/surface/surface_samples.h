@@ -1,0 +1,107 @@
+// Surfaces, points on them and tessellations of their patches for the tests of this folder.
+#pragma once
+
+#include <quadseg/segmentation.h>
+
+#include "math/vec3.h"
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace quadseg::surface::samples {
+
+class Random {
+  public:
+    explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 1) {}
+    std::uint64_t next() {
+        std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+        z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+        return z ^ (z >> 31);
+    }
+    double uniform(double low, double high) { return low + (high - low) * double(next() >> 11) * 0x1p-53; }
+    double gauss() {
+        const double r = std::sqrt(-2 * std::log(1 - uniform(0, 1)));
+        return r * std::cos(uniform(0, 2 * std::numbers::pi));
+    }
+    Vec3 direction() {
+        Vec3 v{gauss(), gauss(), gauss()};
+        return normalized(v);
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+inline Surface make(SurfaceType type, const Vec3& point, const Vec3& axis) {
+    Surface s;
+    s.type = type;
+    s.point = to_array(point);
+    s.axis = to_array(normalized(axis));
+    return s;
+}
+inline Surface plane(const Vec3& point, const Vec3& normal) {
+    return make(SurfaceType::plane, point, normal);
+}
+inline Surface sphere(const Vec3& centre, double radius) {
+    Surface s = make(SurfaceType::sphere, centre, {0, 0, 1});
+    s.radius = radius;
+    return s;
+}
+inline Surface cylinder(const Vec3& point, const Vec3& axis, double radius) {
+    Surface s = make(SurfaceType::cylinder, point, axis);
+    s.radius = radius;
+    return s;
+}
+inline Surface cone(const Vec3& apex, const Vec3& axis, double half_angle) {
+    Surface s = make(SurfaceType::cone, apex, axis);
+    s.half_angle = half_angle;
+    return s;
+}
+inline Surface torus(const Vec3& centre, const Vec3& axis, double major, double minor) {
+    Surface s = make(SurfaceType::torus, centre, axis);
+    s.radius = major;
+    s.minor_radius = minor;
+    return s;
+}
+
+/// u: angle about the axis (plane: first coordinate); v: height along the axis, slant distance of a cone, angle of a
+/// torus' circle (0: outermost), latitude of a sphere.
+inline Vec3 point_on(const Surface& s, double u, double v) {
+    const Vec3 o = to_vec3(s.point), a = normalized(to_vec3(s.axis)), e = any_perpendicular(a), f = cross(a, e);
+    const Vec3 radial = std::cos(u) * e + std::sin(u) * f;
+    switch (s.type) {
+        case SurfaceType::plane:
+            return o + u * e + v * f;
+        case SurfaceType::sphere:
+            return o + s.radius * (std::cos(v) * radial + std::sin(v) * a);
+        case SurfaceType::cylinder:
+            return o + s.radius * radial + v * a;
+        case SurfaceType::cone:
+            return o + v * (std::cos(s.half_angle) * a + std::sin(s.half_angle) * radial);
+        default:
+            return o + (s.radius + s.minor_radius * std::cos(v)) * radial + s.minor_radius * std::sin(v) * a;
+    }
+}
+
+inline Vec3 random_point_on(const Surface& s, Random& random) {
+    const double pi = std::numbers::pi;
+    double limit = pi;
+    if (s.type == SurfaceType::torus && s.minor_radius > s.radius) limit = std::acos(-s.radius / s.minor_radius);
+    switch (s.type) {
+        case SurfaceType::plane:
+            return point_on(s, random.uniform(-2, 2), random.uniform(-2, 2));
+        case SurfaceType::sphere:
+            return s.radius * random.direction() + to_vec3(s.point);
+        case SurfaceType::cylinder:
+            return point_on(s, random.uniform(-pi, pi), random.uniform(-2, 2));
+        case SurfaceType::cone:
+            return point_on(s, random.uniform(-pi, pi), random.uniform(.01, 3));
+        default:
+            return point_on(s, random.uniform(-pi, pi), random.uniform(-.999 * limit, .999 * limit));
+    }
+}
+
+}  // namespace quadseg::surface::samples
