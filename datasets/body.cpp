@@ -160,9 +160,8 @@ void build_face(Builder& builder, const Face& face, const Loop& outline, const s
             for (std::size_t k = 0; k < n; ++k) path.push_back(columns[i + 1][j * n + k]);
             for (std::size_t k = 0; k < n; ++k) path.push_back(rows[j + 1][(i + 1) * n - k]);
             for (std::size_t k = 0; k < n; ++k) path.push_back(columns[i][(j + 1) * n - k]);
-            const Vec3 reach = builder.position(inner[n / 2]) - centre.origin;
-            const double length = builder.counting() ? 0.25 * face.cell : 0.54 * face.cell - norm(reach);
-            builder.flat_ring(inner, path, builder.rows(length), face.surface);
+            // From a typical feature to the sides and corners of its cell.
+            builder.flat_ring(inner, path, builder.rows(0.25 * face.cell), face.surface);
         }
     }
 }
