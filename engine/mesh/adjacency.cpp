@@ -150,19 +150,19 @@ std::size_t count_non_manifold_vertices(const WorkMesh& mesh, const runtime::Run
         const auto& t = mesh.faces[f];
         return t[0] == v ? 0 : t[1] == v ? 1 : 2;
     };
-    // The fan of a corner: round the vertex in both directions until a border or the start.
+    // The fan of a corner: round the vertex in both directions until a border or the start. Faces need not agree in
+    // orientation yet, so a face is left by the edge at the vertex that it was not entered by.
     const auto fan_size = [&](std::size_t start, std::size_t k) {
         const std::uint32_t v = mesh.faces[start][k];
         std::size_t size = 1;
-        for (int direction = 0; direction < 2; ++direction) {
-            std::size_t f = start, corner = k;
-            for (;;) {
-                // Edge `corner` leaves v, the edge before it arrives at v: entering by one, a fan goes on by the other.
-                const std::int32_t next = mesh.neighbors[f][direction == 0 ? corner : (corner + 2) % 3];
-                if (next == no_face) break;
-                f = static_cast<std::size_t>(next);
-                if (f == start) return size;
-                corner = corner_of(f, v);
+        for (const std::size_t first_edge : {k, (k + 2) % 3}) {
+            std::size_t f = start, edge = first_edge;
+            while (mesh.neighbors[f][edge] != no_face) {
+                const auto next = static_cast<std::size_t>(mesh.neighbors[f][edge]);
+                if (next == start) return size;
+                const std::size_t corner = corner_of(next, v);
+                edge = mesh.neighbors[next][corner] == static_cast<std::int32_t>(f) ? (corner + 2) % 3 : corner;
+                f = next;
                 ++size;
             }
         }

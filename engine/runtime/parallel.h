@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
@@ -81,13 +82,15 @@ void parallel_invoke(const A& a, const B& b) {
     tbb::parallel_invoke(a, b);
 }
 
-/// Runs body in an arena of at most `threads` threads (0: the caller's arena as it is).
+/// Runs body in an arena of at most `threads` threads (0: the caller's arena as it is). Never more than the process
+/// allows (one a core, or the caller's tbb::global_control): TBB writes a warning to stderr when it is asked for more.
 template <class Body>
 void in_arena(int threads, const Body& body) {
     if (threads <= 0) {
         body();
     } else {
-        tbb::task_arena arena(threads);
+        const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+        tbb::task_arena arena(static_cast<int>(std::min(static_cast<std::size_t>(threads), allowed)));
         arena.execute(body);
     }
 }
