@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace quadseg::flow {
 namespace {
@@ -131,7 +132,8 @@ class FastFlow {
         for (std::int32_t& label : labels_) {
             if (label >= 0) label = merging.region_of[static_cast<std::size_t>(label)];
         }
-        count_ = merging.regions.size();
+        regions_ = std::move(merging.regions);
+        count_ = regions_.size();
         if (result_.history.empty()) result_.history = std::move(merging.history);
         result_.partial = merging.stopped;
         control_.report(Phase::fine, 0.6, count_);
@@ -139,10 +141,11 @@ class FastFlow {
 
     partition::Relaxed relax() {
         partition::RelaxOptions options;
+        options.moment_steps = fast_.moment_steps;
         options.steps = fast_.relax_steps;
         options.fit.weight = weight_;
         options.fit.plane_tolerance_per_area = true;
-        partition::Relaxed relaxed = partition::relax(passage_, labels_, count_, options, control_);
+        partition::Relaxed relaxed = partition::relax(passage_, labels_, std::move(regions_), options, control_);
         result_.partial = relaxed.stopped;
         result_.energies.push_back(relaxed.energy);
         return relaxed;
@@ -150,6 +153,20 @@ class FastFlow {
 
     void improve() {
         partition::Relaxed relaxed = relax();
+        for (int round = 0; round < fast_.split_rounds && !result_.partial; ++round) {
+            const Labels labels = labels_;
+            const std::size_t count = count_;
+            partition::Relaxed before = std::move(relaxed);
+            dissolve_worst(before.fits);
+            merge_down();
+            if (!result_.partial) relaxed = relax();
+            if (result_.partial || !(relaxed.energy < before.energy)) {
+                labels_ = labels;
+                count_ = count;
+                relaxed = std::move(before);
+                break;
+            }
+        }
         if (result_.partial) return;
         control_.report(Phase::fine, 0.8, count_, relaxed.energy);
         if (fast_.regions == 0 && fast_.smallest_region > 1) {
@@ -160,6 +177,24 @@ class FastFlow {
         }
     }
 
+    /// Regions that their surface explains worst fall apart into their leaves, to be merged in another way.
+    void dissolve_worst(const std::vector<quadric::RegionFit>& fits) {
+        constexpr std::size_t share = 10;
+        std::vector<std::uint32_t> order(count_);
+        std::iota(order.begin(), order.end(), 0U);
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return fits[a].total != fits[b].total ? fits[a].total > fits[b].total : a < b;
+        });
+        std::vector<std::uint8_t> dissolved(count_, 0);
+        for (std::size_t i = 0; i < (count_ + share - 1) / share; ++i) dissolved[order[i]] = 1;
+        const auto first_leaf = static_cast<std::int32_t>(count_);
+        for (std::size_t f = 0; f < labels_.size(); ++f) {
+            if (labels_[f] >= 0 && dissolved[static_cast<std::size_t>(labels_[f])] != 0)
+                labels_[f] = first_leaf + leaves_[f];
+        }
+        count_ = partition::connected_parts(passage_, labels_);
+    }
+
     const mesh::WorkMesh& mesh_;
     const runtime::RunControl& control_;
     const FastOptions& fast_;
@@ -168,6 +203,7 @@ class FastFlow {
     partition::Scorer scorer_;
     Labels leaves_, labels_;
     std::size_t count_ = 0;
+    std::vector<partition::MergeRegion> regions_;
     FlowResult result_;
 };
 

@@ -1,5 +1,6 @@
 #include "partition/relax.h"
 
+#include "quadric/ladder.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -16,38 +17,41 @@ constexpr int most_sweeps = 200;
 constexpr std::int32_t orphan = -2;
 /// Energy densities below this differ by rounding only.
 constexpr double density_floor = 1e-15;
+/// Of |∇f|, which least squares with unit weights keep near 1 (MATH.md §3).
+constexpr double gradient_floor = 0.05;
 
 class Relaxer {
   public:
-    Relaxer(const Passage& passage, Labels& labels, std::size_t count, const RelaxOptions& options,
+    Relaxer(const Passage& passage, Labels& labels, std::vector<MergeRegion>&& regions, const RelaxOptions& options,
             const runtime::RunControl& control)
         : passage_(passage),
           mesh_(*passage.mesh),
           labels_(labels),
-          count_(count),
+          count_(regions.size()),
           options_(options),
           control_(control),
-          dirty_(count, 1),
+          moments_(std::move(regions)),
+          dirty_(count_, 1),
           stamp_(labels.size(), 0) {
-        result_.fits.resize(count);
+        result_.fits.resize(count_);
     }
 
     Relaxed run() {
         Labels best = labels_;
         try {
-            refit();
-            Relaxed kept = result_;
-            for (int step = 0; step < options_.steps; ++step) {
-                const double before = kept.energy;
-                if (!move_faces()) break;
-                repair_connectivity();
-                refit();
-                if (!(result_.energy < before)) break;
+            if (options_.moment_steps > 0) {
+                fitted_labels_ = labels_;
+                for (int step = 0; step < options_.moment_steps; ++step) {
+                    refit_from_moments();
+                    if (!move_faces()) break;
+                    repair_connectivity();
+                }
                 best = labels_;
-                kept = result_;
-                if (!(result_.energy < (1 - options_.stop) * before)) break;
+                moments_ = {};
+                fitted_labels_ = {};
             }
-            result_ = std::move(kept);
+            std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
+            iterate(options_.steps, best, [this] { refit(); });
         } catch (const runtime::Stopped&) {
             result_.stopped = true;
         }
@@ -56,6 +60,24 @@ class Relaxer {
     }
 
   private:
+    template <class Refit>
+    void iterate(int steps, Labels& best, const Refit& refit_dirty) {
+        refit_dirty();
+        Relaxed kept = result_;
+        for (int step = 0; step < steps; ++step) {
+            const double before = kept.energy;
+            if (!move_faces()) break;
+            repair_connectivity();
+            refit_dirty();
+            if (!(result_.energy < before)) break;
+            best = labels_;
+            kept = result_;
+            if (!(result_.energy < (1 - options_.stop) * before)) break;
+        }
+        labels_ = best;
+        result_ = std::move(kept);
+    }
+
     double energy(std::size_t f, std::int32_t label) const noexcept {
         return quadric::triangle_energy(result_.fits[static_cast<std::size_t>(label)].proxy, mesh_.corner(f, 0),
                                         mesh_.corner(f, 1), mesh_.corner(f, 2), mesh_.normals[f], mesh_.areas[f])
@@ -66,7 +88,51 @@ class Relaxer {
         return g < 0 ? -1 : labels_[static_cast<std::size_t>(g)];
     }
 
-    /// Fits the dirty regions and sums the energy. Needs regions_ up to date.
+    /// Brings the moments of the changed regions up to date face by face and fits plane or quadric to them.
+    void refit_from_moments() {
+        struct Change {
+            std::int32_t region;
+            std::uint32_t face;
+            double sign;
+        };
+        std::vector<Change> changes;
+        for (std::size_t f = 0; f < labels_.size(); ++f) {
+            if (labels_[f] == fitted_labels_[f]) continue;
+            changes.push_back({fitted_labels_[f], static_cast<std::uint32_t>(f), -1});
+            changes.push_back({labels_[f], static_cast<std::uint32_t>(f), 1});
+            fitted_labels_[f] = labels_[f];
+        }
+        std::sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+            return a.region != b.region ? a.region < b.region : a.face < b.face;
+        });
+        runtime::parallel_blocks(count_, 64, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            auto change = std::lower_bound(changes.begin(), changes.end(), begin, [](const Change& c, std::size_t r) {
+                return static_cast<std::size_t>(c.region) < r;
+            });
+            for (std::size_t r = begin; r < end; ++r) {
+                if (dirty_[r] == 0) continue;
+                MergeRegion& region = moments_[r];
+                for (; change != changes.end() && static_cast<std::size_t>(change->region) == r; ++change) {
+                    const std::size_t f = change->face;
+                    quadric::accumulate(region.moments, mesh_.corner(f, 0) - region.origin,
+                                        mesh_.corner(f, 1) - region.origin, mesh_.corner(f, 2) - region.origin,
+                                        mesh_.normals[f], change->sign * mesh_.areas[f]);
+                }
+                const quadric::LadderFit fit = quadric::fit_ladder(region.moments, options_.fit.weight, false);
+                result_.fits[r].proxy = {region.origin, fit.c, gradient_floor};
+                result_.fits[r].total = fit.energy;
+            }
+        });
+        sum_energy();
+    }
+
+    void sum_energy() {
+        result_.energy = 0;
+        for (const quadric::RegionFit& fit : result_.fits) result_.energy += fit.total;
+    }
+
+    /// Complete fits of the dirty regions.
     void refit() {
         regions_ = region_faces(labels_, count_);
         std::vector<std::uint32_t> work;
@@ -84,11 +150,10 @@ class Relaxer {
             gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
             result_.fits[r] = quadric::fit_region(gathered.soup(), options_.fit);
         });
-        result_.energy = 0;
         for (std::size_t r = 0; r < count_; ++r) {
             if (regions_.size(r) == 0) result_.fits[r] = {};
-            result_.energy += result_.fits[r].total;
         }
+        sum_energy();
     }
 
     std::vector<std::uint32_t> border_faces() const {
@@ -281,6 +346,8 @@ class Relaxer {
     std::size_t count_;
     const RelaxOptions& options_;
     const runtime::RunControl& control_;
+    std::vector<MergeRegion> moments_;
+    Labels fitted_labels_;  ///< those that the moments belong to
     std::vector<std::uint8_t> dirty_;
     std::vector<std::uint32_t> stamp_;
     std::uint32_t sweep_stamp_ = 0;
@@ -290,9 +357,9 @@ class Relaxer {
 
 }  // namespace
 
-Relaxed relax(const Passage& passage, Labels& labels, std::size_t count, const RelaxOptions& options,
+Relaxed relax(const Passage& passage, Labels& labels, std::vector<MergeRegion> regions, const RelaxOptions& options,
               const runtime::RunControl& control) {
-    return Relaxer(passage, labels, count, options, control).run();
+    return Relaxer(passage, labels, std::move(regions), options, control).run();
 }
 
 }  // namespace quadseg::partition

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "partition/leaves.h"
+#include "partition/pair_merge.h"
 #include "partition/regions.h"
 #include "quadric/region_fit.h"
 #include "runtime/run_control.h"
@@ -14,7 +15,8 @@
 namespace quadseg::partition {
 
 struct RelaxOptions {
-    int steps = 6;         ///< of {move faces, repair connectivity, refit what changed}
+    int moment_steps = 6;  ///< first steps with surfaces from summed moments: no face is visited to fit them
+    int steps = 6;         ///< then steps with complete fits, each {move faces, repair connectivity, refit}
     double margin = 1e-4;  ///< a face moves when it gains more than this share of its energy
     double stop = 1e-3;    ///< ends when a step lowers the energy by less than this share
     quadric::RegionFitOptions fit;
@@ -30,7 +32,8 @@ struct Relaxed {
 
 /// Improves labels 0 … count−1 (−1: left out) in place; regions that were edge-connected stay so; a label may lose all
 /// its faces. Keeps the state of lowest energy. Jacobi sweeps: the same result at any thread count.
-Relaxed relax(const Passage& passage, Labels& labels, std::size_t count, const RelaxOptions& options,
+/// `regions`: moments of the labels, as merging left them, for the first steps.
+Relaxed relax(const Passage& passage, Labels& labels, std::vector<MergeRegion> regions, const RelaxOptions& options,
               const runtime::RunControl& control);
 
 }  // namespace quadseg::partition
