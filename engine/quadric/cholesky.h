@@ -1,74 +1,98 @@
-// Cholesky factorisation of small symmetric matrices of a size known at compile time.
+// Root-free Cholesky factorisation of small symmetric matrices of a size known at compile time, with a right-hand side
+// carried along: A = Uᵀ D⁻¹ U with U upper triangular and D its diagonal.
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace quadseg::quadric {
 
+/// Row-major; of symmetric matrices the upper triangle a[i][j], j ≥ i, counts.
 template <std::size_t N>
 using Matrix = std::array<std::array<double, N>, N>;
 template <std::size_t N>
 using Vector = std::array<double, N>;
 
-/// A = D L Lᵀ D with D = sqrt(diag A): scaling by the diagonal makes the pivots comparable, so that one relative
-/// threshold tells a singular matrix. Reads the lower triangle only.
-template <std::size_t N>
-class Cholesky {
-  public:
-    /// False when a relative pivot is not above `threshold` (singular, indefinite or not finite); then unusable.
-    bool factor(const Matrix<N>& a, double threshold, double ridge = 0) noexcept {
-        for (std::size_t i = 0; i < N; ++i) scale_[i] = a[i][i] > 0 ? 1 / std::sqrt(a[i][i]) : 1;
-        for (std::size_t i = 0; i < N; ++i) {
-            for (std::size_t j = 0; j < i; ++j) {
-                double sum = a[i][j] * (scale_[i] * scale_[j]);
-                for (std::size_t k = 0; k < j; ++k) sum -= l_[i][k] * l_[j][k];
-                l_[i][j] = sum * inverse_[j];
-            }
-            double pivot = a[i][i] * (scale_[i] * scale_[i]) + ridge;
-            for (std::size_t k = 0; k < i; ++k) pivot -= l_[i][k] * l_[i][k];
-            if (!(pivot > threshold)) return false;
-            inverse_[i] = 1 / std::sqrt(pivot);
-        }
-        return true;
-    }
-
-    void solve(Vector<N>& x) const noexcept {
-        for (std::size_t i = 0; i < N; ++i) {
-            double sum = x[i] * scale_[i];
-            for (std::size_t k = 0; k < i; ++k) sum -= l_[i][k] * x[k];
-            x[i] = sum * inverse_[i];
-        }
-        for (std::size_t i = N; i-- > 0;) {
-            double sum = x[i];
-            for (std::size_t k = i + 1; k < N; ++k) sum -= l_[k][i] * x[k];
-            x[i] = sum * inverse_[i];
-        }
-        for (std::size_t i = 0; i < N; ++i) x[i] *= scale_[i];
-    }
-
-  private:
-    Matrix<N> l_;        // strictly below the diagonal
-    Vector<N> inverse_;  // 1 / diagonal of L
-    Vector<N> scale_;
-};
-
 /// Pivots at or below this, relative to the diagonal, are rounding.
 inline constexpr double singular_pivot = 1e-13;
 
-/// Factors A, with a ridge of singular_pivot · trace when A is singular to rounding; tells whether that was needed.
-/// False in `usable` only for matrices that are not finite.
-struct Stabilised {
-    bool usable = false, regularised = false;
-};
 template <std::size_t N>
-Stabilised factor_stabilised(Cholesky<N>& cholesky, const Matrix<N>& a) noexcept {
-    if (cholesky.factor(a, singular_pivot)) return {true, false};
-    for (double ridge = singular_pivot * static_cast<double>(N); ridge < 1; ridge *= 1e3) {
-        if (cholesky.factor(a, singular_pivot, ridge)) return {true, true};
+class Cholesky {
+  public:
+    /// False when a pivot is not above `threshold` relative to its diagonal entry (singular, indefinite or not finite).
+    /// `ridge`, relative to the diagonal too, is added to it.
+    bool factor(const Matrix<N>& a, const Vector<N>& b, double threshold, double ridge = 0) noexcept {
+        for (std::size_t i = 0; i < N; ++i) {
+            for (std::size_t j = 0; j < i; ++j) row_[i][j] = 0;
+            for (std::size_t j = i; j < N; ++j) row_[i][j] = a[i][j];
+            row_[i][N] = b[i];
+            for (std::size_t j = N + 1; j < width; ++j) row_[i][j] = 0;
+        }
+        for (std::size_t i = 0; i < N; ++i) row_[i][i] += ridge * a[i][i];
+        for (std::size_t i = 0; i < N; ++i) {
+            const double pivot = row_[i][i];
+            if (!(pivot > threshold * a[i][i]) || !(pivot > 0)) return false;
+            inverse_[i] = 1 / pivot;
+            for (std::size_t k = i + 1; k < N; ++k) {
+                const double factor = row_[i][k] * inverse_[i];
+                // Whole rows: what lies left of the diagonal is never read, and a fixed length vectorises.
+                for (std::size_t j = 0; j < width; ++j) row_[k][j] -= factor * row_[i][j];
+            }
+        }
+        return true;
     }
-    return {false, true};
-}
+    /// The same with a ridge of singular_pivot · N where the matrix is singular to rounding.
+    /// usable = false only for matrices that are not finite.
+    struct State {
+        bool usable = false, regularised = false;
+    };
+    State factor_stabilised(const Matrix<N>& a, const Vector<N>& b) noexcept {
+        if (factor(a, b, singular_pivot)) return {true, false};
+        for (double ridge = singular_pivot * static_cast<double>(N); ridge < 1; ridge *= 1e3) {
+            if (factor(a, b, singular_pivot, ridge)) return {true, true};
+        }
+        return {false, true};
+    }
+
+    /// Solution for the right-hand side given, in the span of the first `count` unknowns (the others 0).
+    Vector<N> solution(std::size_t count = N) const noexcept {
+        Vector<N> x{};
+        for (std::size_t i = 0; i < count; ++i) x[i] = row_[i][N];
+        back_substitute(x, count);
+        return x;
+    }
+    /// bᵀ A⁻¹ b over the first `count` unknowns: what they lower xᵀAx − 2bᵀx by.
+    double reduction(std::size_t count = N) const noexcept {
+        double sum = 0;
+        for (std::size_t i = 0; i < count; ++i) sum += row_[i][N] * row_[i][N] * inverse_[i];
+        return sum;
+    }
+
+    void solve(Vector<N>& x) const noexcept {
+        forward_substitute(x, N);
+        back_substitute(x, N);
+    }
+    /// x becomes U⁻ᵀ D x over the first `count` unknowns, which is what factor() made of b.
+    void forward_substitute(Vector<N>& x, std::size_t count) const noexcept {
+        for (std::size_t i = 0; i < count; ++i) {
+            const double factor = x[i] * inverse_[i];
+            for (std::size_t k = i + 1; k < count; ++k) x[k] -= factor * row_[i][k];
+        }
+    }
+    void back_substitute(Vector<N>& x, std::size_t count) const noexcept {
+        for (std::size_t i = count; i-- > 0;) {
+            double sum = x[i];
+            for (std::size_t k = i + 1; k < count; ++k) sum -= row_[i][k] * x[k];
+            x[i] = sum * inverse_[i];
+        }
+    }
+    double inverse_pivot(std::size_t i) const noexcept { return inverse_[i]; }
+    double reduced_rhs(std::size_t i) const noexcept { return row_[i][N]; }
+
+  private:
+    static constexpr std::size_t width = (N + 1 + 3) / 4 * 4;
+    std::array<std::array<double, width>, N> row_;
+    Vector<N> inverse_;
+};
 
 }  // namespace quadseg::quadric

@@ -49,7 +49,7 @@ bool takes_part(double area) noexcept {
 
 }  // namespace
 
-FacePacks::FacePacks(const TriangleSoup& region) : faces_(region.size()) {
+FacePacks::FacePacks(const TriangleSoup& region, bool with_moments) : faces_(region.size()) {
     // Centroid, and a radius good enough to scale with, about a point of the region: no cancellation far from 0.
     Vec3 reference, first;
     double second = 0;
@@ -73,12 +73,13 @@ FacePacks::FacePacks(const TriangleSoup& region) : faces_(region.size()) {
     centre_ = reference + mean;
     scale_ = 1 / radius;
 
-    packs_.resize((faces_ + lanes - 1) / lanes);
+    pack_count_ = (faces_ + lanes - 1) / lanes;
+    packs_ = std::make_unique_for_overwrite<FacePack[]>(pack_count_);
     LaneMoments sum;
     Pack normal_area{};
     const double area_scale = scale_ * scale_;
-    for (std::size_t p = 0; p < packs_.size(); ++p) {
-        FacePack& f = packs_[p];
+    for (std::size_t p = 0; p < pack_count_; ++p) {
+        FacePack f{};
         const std::size_t begin = p * lanes, count = std::min(lanes, faces_ - begin);
         for (std::size_t l = 0; l < count; ++l) {
             const std::size_t t = begin + l;
@@ -93,6 +94,11 @@ FacePacks::FacePacks(const TriangleSoup& region) : faces_(region.size()) {
             f.normal[1][l] = region.normals[t].y;
             f.normal[2][l] = region.normals[t].z;
             f.area[l] = region.areas[t] * area_scale;
+        }
+        packs_[p] = f;
+        if (!with_moments) {
+            sum.area[0] += f.area;
+            continue;
         }
         Pack t[35];
         triangle_moments(&f.corners[0], f.area, t);
@@ -109,9 +115,9 @@ Candidate FacePacks::prepare(const Coefficients& c) {
     Candidate result;
     result.c = c;
     const double orientation = dot(c, normal_vector(moments_));
-    lengths_.resize(packs_.size() * lanes);
+    lengths_.resize(pack_count_ * lanes);
     Pack mean_pack{};
-    for (std::size_t p = 0; p < packs_.size(); ++p) {
+    for (std::size_t p = 0; p < pack_count_; ++p) {
         Pack x[3], length;
         centroid(packs_[p], x);
         const PackGradient g(c, x[0], x[1], x[2]);
@@ -136,7 +142,7 @@ Candidate FacePacks::prepare(const Coefficients& c) {
 void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments& out_first,
                         Moments& out_second) const {
     LaneMoments sum_first, sum_second;
-    for (const FacePack& f : packs_) {
+    for (const FacePack& f : packs()) {
         Pack x[3], t[35];
         centroid(f, x);
         triangle_moments(&f.corners[0], f.area, t);
@@ -166,7 +172,7 @@ void FacePacks::evaluate(Candidate& candidate) const {
     const Coefficients& c = candidate.c;
     const Pack floor = Pack{} + candidate.gradient_floor;
     Pack distance{}, normal{}, against{};
-    for (const FacePack& f : packs_) {
+    for (const FacePack& f : packs()) {
         const Pack* const v = &f.corners[0];
         const PackGradient g0(c, v[0], v[1], v[2]), g1(c, v[3], v[4], v[5]), g2(c, v[6], v[7], v[8]);
         // f = c0 + u·(b + ∇f)/2; middles of edges from end values and gradients (see triangle_energy).
@@ -212,7 +218,7 @@ double FacePacks::share_on_other_sheet(const Coefficients& c) const {
     if (sheets.kind() == Sheets::Kind::connected) return 0;
     if (sheets.kind() == Sheets::Kind::imaginary) return 1;
     double second = 0, whole = 0;
-    for (const FacePack& f : packs_) {
+    for (const FacePack& f : packs()) {
         Pack x[3];
         centroid(f, x);
         for (std::size_t l = 0; l < lanes; ++l) {

@@ -7,6 +7,8 @@
 #include "quadric/pack.h"
 #include "quadric/region_fit.h"
 
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,7 +32,8 @@ struct Candidate {
 class FacePacks {
   public:
     /// Finds the frame, fills the packs and the unit-weight moments. Faces of no (or no finite) area do not take part.
-    explicit FacePacks(const TriangleSoup& region);
+    /// with_moments = false leaves the moments' degrees above 0 and the normal moments out, where nothing is fitted.
+    explicit FacePacks(const TriangleSoup& region, bool with_moments = true);
 
     double area() const noexcept { return area_; }  ///< in the unit frame
     const Vec3& centre() const noexcept { return centre_; }
@@ -50,7 +53,10 @@ class FacePacks {
     double share_on_other_sheet(const Coefficients& c) const;
 
   private:
-    std::vector<FacePack> packs_;
+    std::span<const FacePack> packs() const noexcept { return {packs_.get(), pack_count_}; }
+
+    std::unique_ptr<FacePack[]> packs_;  // not a vector: written once, without being cleared first
+    std::size_t pack_count_ = 0;
     std::vector<double> lengths_, sample_;
     Vec3 centre_;
     double area_ = 0, scale_ = 1;

@@ -1,7 +1,6 @@
 #include "quadric/fit.h"
 
 #include "quadric/normal_equations.h"
-#include "quadric/restricted_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +20,9 @@ struct ReducedPencil {
         add_normal_matrix(m, 1, normal);
         const double inverse = 1 / distance[0][0];
         for (std::size_t i = 0; i < 9; ++i) {
-            mean[i] = distance[i + 1][0] * inverse;
-            for (std::size_t j = 0; j <= i; ++j) {
-                s[i][j] = distance[i + 1][j + 1] - mean[i] * distance[j + 1][0];
+            mean[i] = distance[0][i + 1] * inverse;
+            for (std::size_t j = i; j < 9; ++j) {
+                s[i][j] = distance[i + 1][j + 1] - mean[i] * distance[0][j + 1];
                 n[i][j] = normal[i + 1][j + 1];
             }
             s_trace += s[i][i];
@@ -34,7 +33,7 @@ struct ReducedPencil {
         Vector<9> r{};
         for (std::size_t i = 0; i < 9; ++i) {
             r[i] += n[i][i] * y[i];
-            for (std::size_t j = 0; j < i; ++j) {
+            for (std::size_t j = i + 1; j < 9; ++j) {
                 r[i] += n[i][j] * y[j];
                 r[j] += n[i][j] * y[i];
             }
@@ -68,15 +67,15 @@ QuadricFit fit_taubin(const Moments& m) noexcept {
     const double shift = 1e-13 * pencil.s_trace / pencil.n_trace;
     Matrix<9> shifted_s = pencil.s;
     for (std::size_t i = 0; i < 9; ++i) {
-        for (std::size_t j = 0; j <= i; ++j) shifted_s[i][j] += shift * pencil.n[i][j];
+        for (std::size_t j = i; j < 9; ++j) shifted_s[i][j] += shift * pencil.n[i][j];
     }
     Cholesky<9> cholesky;
     // Half-way pivots are what makes inverse iteration converge: only those at rounding level count as singular.
-    if (!cholesky.factor(shifted_s, 1e-16)) {
+    if (!cholesky.factor(shifted_s, {}, 1e-16)) {
         fit.regularised = true;
         bool usable = false;
         for (double ridge = 1e-15; !usable && ridge < 1; ridge *= 10) {
-            usable = cholesky.factor(shifted_s, 1e-16, ridge);
+            usable = cholesky.factor(shifted_s, {}, 1e-16, ridge);
         }
         if (!usable) return {plane({0, 0, 1}, 0), 0, true};
     }
@@ -114,16 +113,12 @@ QuadricFit fit_taubin(const Moments& m) noexcept {
 }
 
 QuadricFit fit_least_squares(const Moments& weighted, double weight) noexcept {
-    return fit_least_squares(NormalEquations(weighted, weight));
-}
-
-QuadricFit fit_least_squares(const NormalEquations& equations) noexcept {
+    const NormalEquations equations(weighted, weight);
     Cholesky<10> cholesky;
-    const Stabilised state = factor_stabilised(cholesky, equations.a);
-    if (!state.usable || !(equations.a[0][0] > 0)) return {plane({0, 0, 1}, 0), 0, true};
+    const auto state = cholesky.factor_stabilised(equations.a, equations.b);
+    if (!state.usable) return {plane({0, 0, 1}, 0), 0, true};
     QuadricFit fit;
-    fit.c = equations.b;
-    cholesky.solve(fit.c);
+    fit.c = cholesky.solution();
     fit.regularised = state.regularised;
     if (!finite(fit.c)) return {plane({0, 0, 1}, 0), 0, true};
     fit.energy = equations.energy(fit.c);

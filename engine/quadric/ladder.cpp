@@ -1,7 +1,7 @@
 #include "quadric/ladder.h"
 
 #include "quadric/fit.h"
-#include "quadric/restricted_fit.h"
+#include "quadric/nested_fits.h"
 
 namespace quadseg::quadric {
 namespace {
@@ -59,24 +59,27 @@ LadderFit fit_ladder(const Moments& m, double weight, bool ladder) noexcept {
     };
     // The quadric's energy bounds those of all the others from below: it tells which of them can still win.
     if (best_cost > factor(LadderModel::sphere) * rounding) {
-        const NormalEquations equations(centred, local_weight);
-        const QuadricFit quadric = fit_least_squares(equations);
-        const double bound = quadric.energy + rounding;
-        if (ladder) {
-            if (factor(LadderModel::sphere) * bound < best_cost) {
-                offer(restricted_sphere(equations), LadderModel::sphere);
+        const NestedFits fits(centred, local_weight);
+        const double bound = fits.quadric_energy() + rounding;
+        const auto may_win = [&](LadderModel candidate) { return factor(candidate) * bound < best_cost; };
+        if (fits.usable() && may_win(LadderModel::sphere)) {
+            const QuadricFit quadric = fits.quadric();
+            if (ladder) {
+                if (factor(LadderModel::sphere) * (fits.sphere_energy() + rounding) < best_cost) {
+                    offer(fits.sphere(), LadderModel::sphere);
+                }
+                if (may_win(LadderModel::cylinder)) {
+                    offer(fits.cylinder(cylinder_direction(centred)), LadderModel::cylinder);
+                }
+                if (may_win(LadderModel::revolution)) {
+                    offer(fits.revolution(revolution_direction(centred)), LadderModel::revolution);
+                }
+                if (may_win(LadderModel::revolution)) {
+                    offer(fits.revolution(revolution_direction(quadric.c)), LadderModel::revolution);
+                }
             }
-            if (factor(LadderModel::cylinder) * bound < best_cost) {
-                offer(restricted_cylinder(equations, cylinder_direction(centred)), LadderModel::cylinder);
-            }
-            if (factor(LadderModel::revolution) * bound < best_cost) {
-                offer(restricted_revolution(equations, revolution_direction(centred)), LadderModel::revolution);
-            }
-            if (factor(LadderModel::revolution) * bound < best_cost) {
-                offer(restricted_revolution(equations, revolution_direction(quadric.c)), LadderModel::revolution);
-            }
+            if (may_win(LadderModel::quadric)) offer(quadric, LadderModel::quadric);
         }
-        offer(quadric, LadderModel::quadric);
     }
     result.c = from_local(best.c, size.centroid, scale);
     for (double& v : result.c) v *= size.radius;  // |∇f| as it was in the local frame

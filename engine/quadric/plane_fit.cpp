@@ -9,7 +9,7 @@ namespace {
 
 /// argmin nᵀ S n − 2 b·n over |n| = 1: n(μ) = (S + μ)⁻¹ b with the μ > −λ_min for which |n(μ)| = 1; |n(μ)| falls with
 /// μ.
-Vec3 constrained_minimum(const Symmetric3& s, const Vec3& b) noexcept {
+Vec3 constrained_minimum_by_eigenvectors(const Symmetric3& s, const Vec3& b) noexcept {
     const EigenSystem e = eigen_decomposition(s);
     const double beta[3] = {dot(b, e.vectors[0]), dot(b, e.vectors[1]), dot(b, e.vectors[2])};
     const double gap[3] = {0, e.values[1] - e.values[0], e.values[2] - e.values[0]};
@@ -46,6 +46,33 @@ Vec3 constrained_minimum(const Symmetric3& s, const Vec3& b) noexcept {
     }
     length();
     return normalized(e.vectors[0] * y[0] + e.vectors[1] * y[1] + e.vectors[2] * y[2]);
+}
+
+/// The same by Newton's method from μ = |b|, where |n| ≤ 1, with an adjugate a step: for nearly flat regions, where S
+/// is small beside b, two or three steps. Zero when it does not settle inside the interval.
+Vec3 constrained_minimum_by_newton(const Symmetric3& s, const Vec3& b) noexcept {
+    double mu = norm(b);
+    // μ stays right of −λ_min as long as S + μ is positive definite.
+    for (int step = 0; step < 8; ++step) {
+        const double xx = s.xx + mu, yy = s.yy + mu, zz = s.zz + mu;
+        const Symmetric3 adjugate{yy * zz - s.yz * s.yz, s.xz * s.yz - s.xy * zz, s.xy * s.yz - s.xz * yy,
+                                  xx * zz - s.xz * s.xz, s.xy * s.xz - xx * s.yz, xx * yy - s.xy * s.xy};
+        const double determinant = xx * adjugate.xx + s.xy * adjugate.xy + s.xz * adjugate.xz;
+        if (!(xx > 0 && adjugate.zz > 0 && determinant > 0)) return {};
+        const double r = 1 / determinant;
+        const Vec3 n = adjugate * b * r;
+        const double square = squared_norm(n);
+        if (std::abs(square - 1) < 1e-14) return normalized(n);
+        const double slope = dot(n, adjugate * n) * r;
+        const double length = std::sqrt(square);
+        mu += (length - 1) * square / slope;
+    }
+    return {};
+}
+
+Vec3 constrained_minimum(const Symmetric3& s, const Vec3& b) noexcept {
+    const Vec3 n = constrained_minimum_by_newton(s, b);
+    return squared_norm(n) > 0.5 ? n : constrained_minimum_by_eigenvectors(s, b);
 }
 
 }  // namespace

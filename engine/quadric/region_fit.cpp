@@ -143,7 +143,7 @@ RegionFit fit_region(const TriangleSoup& region, const RegionFitOptions& options
 }
 
 bool is_valid(const Proxy& proxy, const TriangleSoup& region) {
-    FacePacks faces(region);
+    const FacePacks faces(region, false);
     if (!(faces.area() > 0)) return true;
     Candidate local;
     local.c = to_local(proxy.c, faces.centre() - proxy.origin, faces.scale());
