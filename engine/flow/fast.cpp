@@ -39,6 +39,8 @@ double normal_noise(const mesh::WorkMesh& mesh, double weight) {
     return 0.75 * weight * *middle;
 }
 
+constexpr std::size_t many_leaves = 64;
+
 class FastFlow {
   public:
     FastFlow(const FlowInput& input, const FastOptions& fast)
@@ -104,6 +106,11 @@ class FastFlow {
             options.largest = std::max<std::size_t>(1, mesh_.face_count() / (2 * wanted));
             leaves = partition::grow_leaves(passage_, options, control_);
         }
+        if (fast_.regions > 0 && leaves.count > many_leaves * fast_.regions) {
+            // So many leaves a region leave nothing to gain from small ones.
+            options.angle = 1.5 * fast_.leaf_angle;
+            leaves = partition::grow_leaves(passage_, options, control_);
+        }
         if (leaves.count < fast_.regions) {
             options.largest = 1;
             leaves = partition::grow_leaves(passage_, options, control_);
@@ -153,7 +160,7 @@ class FastFlow {
 
     void improve() {
         partition::Relaxed relaxed = relax();
-        for (int round = 0; round < fast_.split_rounds && !result_.partial; ++round) {
+        for (int round = 0; round < fast_.split_rounds && !result_.partial && is_organic(relaxed.energy); ++round) {
             const Labels labels = labels_;
             const std::size_t count = count_;
             partition::Relaxed before = std::move(relaxed);
@@ -169,22 +176,80 @@ class FastFlow {
         }
         if (result_.partial) return;
         control_.report(Phase::fine, 0.8, count_, relaxed.energy);
-        if (fast_.regions == 0 && fast_.smallest_region > 1) {
-            partition::AbsorbOptions options;
-            options.smallest_region = fast_.smallest_region;
-            options.weight = weight_;
-            count_ = partition::absorb_small(passage_, labels_, count_, relaxed.fits, options, control_);
+        if (fast_.regions > 0) {
+            restore_count(relaxed.fits);
+        } else if (fast_.smallest_region > 1) {
+            absorb(relaxed.fits);
         }
+    }
+
+    bool is_organic(double energy) const {
+        constexpr double least_angle = 4 * std::numbers::pi / 180;
+        return energy > weight_ * least_angle * least_angle * mesh_.total_area;
+    }
+
+    void absorb(const std::vector<quadric::RegionFit>& fits) {
+        constexpr double least_share = 1e-6;
+        constexpr double explained = 20 * std::numbers::pi / 180;
+        partition::AbsorbOptions options;
+        options.smallest_region = fast_.smallest_region;
+        options.tolerance = weight_ * explained * explained;
+        options.smallest_area = least_share * mesh_.total_area;
+        options.weight = weight_;
+        count_ = partition::absorb_small(passage_, labels_, count_, fits, options, control_);
+    }
+
+    std::vector<std::uint32_t> by_falling_energy(const std::vector<quadric::RegionFit>& fits) const {
+        std::vector<std::uint32_t> order(fits.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return fits[a].total != fits[b].total ? fits[a].total > fits[b].total : a < b;
+        });
+        return order;
+    }
+
+    /// Relaxation may leave labels without faces: as many regions as are missing are won by cutting the worst ones up
+    /// finely enough and merging again.
+    void restore_count(const std::vector<quadric::RegionFit>& fits) {
+        std::vector<std::size_t> size(count_, 0);
+        for (const std::int32_t label : labels_) {
+            if (label >= 0) ++size[static_cast<std::size_t>(label)];
+        }
+        const auto present =
+            static_cast<std::size_t>(std::count_if(size.begin(), size.end(), [](std::size_t s) { return s > 0; }));
+        if (present >= fast_.regions) return;
+        const std::size_t missing = fast_.regions - present;
+        constexpr std::size_t choice = 4;  // fragments for each region wanted of them
+        std::vector<std::uint8_t> cut(count_, 0);
+        std::size_t regions = 0, faces = 0;
+        for (const std::uint32_t r : by_falling_energy(fits)) {
+            if (regions >= missing && faces >= choice * (regions + missing)) break;
+            if (size[r] < 2) continue;
+            cut[r] = 1;
+            ++regions;
+            faces += size[r];
+        }
+        std::vector<std::uint8_t> active(labels_.size(), 0);
+        for (std::size_t f = 0; f < labels_.size(); ++f) {
+            if (labels_[f] >= 0) active[f] = cut[static_cast<std::size_t>(labels_[f])];
+        }
+        Passage inside = passage_;
+        inside.active = active;
+        partition::LeafOptions options;
+        options.smallest_coplanar = 0;
+        options.largest = std::max<std::size_t>(1, faces / (choice * (regions + missing)));
+        const partition::Leaves pieces = partition::grow_leaves(inside, options, control_);
+        for (std::size_t f = 0; f < labels_.size(); ++f) {
+            if (active[f] != 0) labels_[f] = static_cast<std::int32_t>(count_) + pieces.labels[f];
+        }
+        count_ = partition::connected_parts(passage_, labels_);
+        merge_down();
     }
 
     /// Regions that their surface explains worst fall apart into their leaves, to be merged in another way.
     void dissolve_worst(const std::vector<quadric::RegionFit>& fits) {
         constexpr std::size_t share = 10;
-        std::vector<std::uint32_t> order(count_);
-        std::iota(order.begin(), order.end(), 0U);
-        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return fits[a].total != fits[b].total ? fits[a].total > fits[b].total : a < b;
-        });
+        const std::vector<std::uint32_t> order = by_falling_energy(fits);
         std::vector<std::uint8_t> dissolved(count_, 0);
         for (std::size_t i = 0; i < (count_ + share - 1) / share; ++i) dissolved[order[i]] = 1;
         const auto first_leaf = static_cast<std::int32_t>(count_);

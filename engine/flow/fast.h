@@ -15,9 +15,11 @@ struct FastOptions {
     double noise_factor = 10;   ///< κ: and this many times the noise of the degrees of freedom that it saves
     bool ladder = true;         ///< plane < sphere < cylinder < revolution < quadric with mild factors
     double leaf_angle = 8;      ///< degrees between a face and the mean normal of its leaf
-    int moment_steps = 6;       ///< boundary relaxation with surfaces from moments
-    int relax_steps = 1;        ///< and with complete fits
-    int split_rounds = 0;       ///< of {dissolve the regions of highest energy into leaves, merge again, relax}
+    int moment_steps = 2;       ///< boundary relaxation with surfaces from moments
+    int relax_steps = 3;        ///< and with complete fits
+    /// Of {dissolve the regions of highest energy into leaves, merge again, relax}, where surfaces explain the mesh
+    /// badly (organic shapes).
+    int split_rounds = 1;
     std::size_t smallest_region = 4;  ///< regions of fewer faces join a neighbour at the end
     /// F' flags: only these faces take part; borders of the others are barriers; their labels come out −1. Empty: all.
     std::span<const std::uint8_t> active = {};

@@ -7,9 +7,14 @@
 namespace quadseg::partition {
 namespace {
 
-/// Neighbour of the region of `faces` whose surface costs least on them; −1: none.
-std::int32_t cheapest_neighbor(const Passage& passage, const Labels& labels, std::span<const std::uint32_t> faces,
-                               std::span<const quadric::RegionFit> fits, double weight) {
+struct Neighbor {
+    std::int32_t label = -1;
+    double energy = 0;
+};
+
+/// Neighbour of the region of `faces` whose surface costs least on them; label −1: none.
+Neighbor cheapest_neighbor(const Passage& passage, const Labels& labels, std::span<const std::uint32_t> faces,
+                           std::span<const quadric::RegionFit> fits, double weight) {
     const mesh::WorkMesh& mesh = *passage.mesh;
     const std::int32_t own = labels[faces.front()];
     std::vector<std::int32_t> neighbors;
@@ -23,8 +28,7 @@ std::int32_t cheapest_neighbor(const Passage& passage, const Labels& labels, std
     }
     std::sort(neighbors.begin(), neighbors.end());
     neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
-    std::int32_t best = -1;
-    double lowest = 0;
+    Neighbor best;
     for (const std::int32_t label : neighbors) {
         double sum = 0;
         for (const std::uint32_t f : faces) {
@@ -33,10 +37,7 @@ std::int32_t cheapest_neighbor(const Passage& passage, const Labels& labels, std
                        .hybrid(weight);
         }
         if (std::isnan(sum)) sum = std::numeric_limits<double>::max();
-        if (best < 0 || sum < lowest) {
-            best = label;
-            lowest = sum;
-        }
+        if (best.label < 0 || sum < best.energy) best = {label, sum};
     }
     return best;
 }
@@ -70,10 +71,11 @@ std::size_t absorb_small(const Passage& passage, Labels& labels, std::size_t cou
         control.check_often(polled);
         // It may have grown by others that joined it.
         if (!small(members[r].size(), area[r])) continue;
-        const std::int32_t to = cheapest_neighbor(passage, labels, members[r], fits, options.weight);
-        if (to < 0) continue;
-        const auto t = static_cast<std::size_t>(to);
-        for (const std::uint32_t f : members[r]) labels[f] = to;
+        const Neighbor to = cheapest_neighbor(passage, labels, members[r], fits, options.weight);
+        if (to.label < 0) continue;
+        if (!(to.energy <= options.tolerance * area[r]) && !(area[r] < options.smallest_area)) continue;
+        const auto t = static_cast<std::size_t>(to.label);
+        for (const std::uint32_t f : members[r]) labels[f] = to.label;
         area[t] += area[r];
         if (!members[t].empty()) members[t].insert(members[t].end(), members[r].begin(), members[r].end());
         members[r].clear();

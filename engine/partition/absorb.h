@@ -12,9 +12,10 @@
 namespace quadseg::partition {
 
 struct AbsorbOptions {
-    std::size_t smallest_region = 4;  ///< regions of fewer faces are absorbed
-    double smallest_area = 0;         ///< and those of less area, unit frame
-    double weight = 0.5;              ///< ω of the energy by which the neighbour is chosen
+    std::size_t smallest_region = 4;  ///< regions of fewer faces are absorbed where a neighbour explains them …
+    double tolerance = 0;             ///< … that is, at an energy per area of at most this
+    double smallest_area = 0;         ///< regions of less area (unit frame) are absorbed at any price
+    double weight = 0.5;              ///< ω of the energy
 };
 
 /// Labels 0 … count−1 with one fit each; returns the number of regions, renumbered by first face. Regions without a
