@@ -1,0 +1,236 @@
+#include "flow/paper.h"
+
+#include "flow/methods.h"
+#include "flow/paper_loop.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace quadseg::flow {
+
+namespace {
+
+/// Lloyd iterations on the fine mesh after a coarse one: the labels are nearly right already (section 5.2).
+constexpr int refinement_iterations = 6;
+/// A merge, or a teleportation, must pay by this share of the energy: else the loop could merge and insert for ever.
+constexpr double least_progress = 1e-3;
+/// Teleportation pays off, as a rule of thumb of VSA, if the merge costs less than half of what splitting can save.
+constexpr double teleport_share = 0.5;
+/// Iterations of a Lloyd run after which a teleportation that is still worse by this factor is given up.
+constexpr int trial_iterations = 6;
+constexpr double hopeless_factor = 1.5;
+
+/// Smallest energy seen with each number of regions. A merge is redundant only when it leads to a better partition than
+/// the one that the region was inserted into; this also makes the loop end.
+class BestEnergies {
+  public:
+    void note(const LoopState& state) {
+        const auto [entry, fresh] = best_.emplace(state.regions(), state.energy);
+        if (!fresh) entry->second = std::min(entry->second, state.energy);
+    }
+    bool is_progress(std::size_t regions, double energy) const {
+        const auto found = best_.find(regions);
+        return found == best_.end() || energy < found->second * (1 - least_progress);
+    }
+
+  private:
+    std::map<std::size_t, double> best_;
+};
+
+/// The flowchart of Fig. 2.
+class PaperFlow {
+  public:
+    explicit PaperFlow(const FlowInput& input)
+        : paper_(input.options.paper), wanted_(input.options.regions), control_(input.control), loop_(input) {}
+
+    StopReason optimise() {
+        initialise();
+        lloyd(FloodScope::all);
+        return finish_number();
+    }
+    StopReason refine(const partition::Labels& initial) {
+        loop_.start_from_labels(initial);
+        loop_.lloyd(std::min(refinement_iterations, paper_.lloyd_iterations), FloodScope::all, true);
+        best_.note(loop_.state());
+        if (loop_.state().regions() == wanted_) return StopReason::regions;
+        return wanted_ == 0 ? StopReason::converged : finish_number();
+    }
+    VariationalLoop& loop() noexcept { return loop_; }
+
+  private:
+    /// Section 4.2; with features, at least their groups (section 5.1).
+    void initialise() {
+        const std::size_t seeds = paper_.initial_regions > 0 ? paper_.initial_regions : wanted_;
+        if (seeds <= loop_.component_count()) {
+            loop_.start_from_components();
+        } else {
+            loop_.start_from_seeds(seeds);
+        }
+    }
+
+    /// Merging and insertion (section 4.3.3) until a stop rule holds.
+    StopReason finish_number() {
+        StopReason reason = StopReason::converged;
+        for (;;) {
+            merge_redundant();
+            const std::size_t count = loop_.state().regions();
+            if (wanted_ > 0 && count > wanted_) {
+                if (!merge_cheapest()) break;  // every component, every feature group keeps a region
+                continue;
+            }
+            if (wanted_ > 0 ? count == wanted_ : well_approximated()) {
+                reason = wanted_ > 0 ? StopReason::regions : StopReason::tolerance;
+                break;
+            }
+            if (count >= paper_.maximum_regions) {
+                reason = StopReason::maximum;
+                break;
+            }
+            if (!insert_region()) break;
+        }
+        if (reason == StopReason::regions && paper_.teleportation) teleport_regions();
+        lloyd_again();
+        return reason;
+    }
+
+    bool well_approximated() const { return loop_.all_valid() && loop_.state().energy <= paper_.energy_threshold; }
+
+    void lloyd(FloodScope scope) {
+        loop_.progress = progress();
+        loop_.lloyd(paper_.lloyd_iterations, scope, false);
+        best_.note(loop_.state());
+    }
+    void lloyd_again() {
+        loop_.lloyd(paper_.lloyd_iterations, FloodScope::all, true);
+        best_.note(loop_.state());
+    }
+
+    /// Pairs whose common surface is as good as their own.
+    void merge_redundant() {
+        while (paper_.merging && (wanted_ == 0 || loop_.state().regions() < wanted_)) {
+            const auto candidates = loop_.merge_candidates();
+            if (candidates.empty() || !candidates[0].valid) return;
+            const partition::MergeCandidate& best = candidates[0];
+            const LoopState& state = loop_.state();
+            if (!(best.increase < paper_.merge_tolerance)) return;
+            if (!best_.is_progress(state.regions() - 1, state.energy + best.increase)) return;
+            merge(best.pair);
+        }
+    }
+    bool merge_cheapest() {
+        const auto candidates = loop_.merge_candidates();
+        if (candidates.empty()) return false;
+        merge(candidates[0].pair);
+        return true;
+    }
+    void merge(const partition::RegionPair& pair) {
+        loop_.merge(pair.a, pair.b);
+        best_.note(loop_.state());
+        loop_.lloyd(paper_.lloyd_iterations, FloodScope::affected, true);
+        best_.note(loop_.state());
+    }
+
+    bool insert_region() {
+        const std::int32_t region = loop_.region_to_split();
+        if (region < 0 || !loop_.split(static_cast<std::uint32_t>(region))) return false;
+        lloyd(FloodScope::affected);
+        return true;
+    }
+
+    /// Region teleportation: a merge and an insertion elsewhere, kept when the energy falls. The split tried first is
+    /// that of the region of the largest energy, which bounds what a split can save.
+    void teleport_regions() {
+        Failures failed;
+        for (int i = 0; i < paper_.teleportations; ++i) {
+            const LoopState before = loop_.state();
+            const auto move = next_teleportation(failed);
+            if (!move) return;
+            try {
+                if (teleport(*move) && loop_.state().energy < before.energy * (1 - least_progress)) continue;
+            } catch (const runtime::Stopped&) {
+                loop_.restore(before);
+                throw;
+            }
+            loop_.restore(before);
+            failed.insert(move->stamps);
+        }
+    }
+
+    using Stamps = std::array<std::uint64_t, 3>;
+    using Failures = std::set<Stamps>;
+    struct Teleportation {
+        partition::RegionPair merge;
+        std::uint32_t split = 0;
+        Stamps stamps;  ///< of the region to split and of the pair
+    };
+
+    std::optional<Teleportation> next_teleportation(const Failures& failed) {
+        const auto candidates = loop_.merge_candidates();
+        const LoopState& state = loop_.state();
+        std::optional<Teleportation> best;
+        double best_gain = 0;
+        for (const partition::MergeCandidate& c : candidates) {
+            if (!c.valid) break;
+            for (std::uint32_t r = 0; r < state.regions(); ++r) {
+                if (r == c.pair.a || r == c.pair.b || loop_.face_count(r) < 2) continue;
+                const Stamps stamps{state.stamps[r], state.stamps[c.pair.a], state.stamps[c.pair.b]};
+                const double gain = teleport_share * state.fits[r].total - c.increase;
+                if (!(gain > best_gain) || failed.contains(stamps)) continue;
+                best_gain = gain;
+                best = Teleportation{c.pair, r, stamps};
+            }
+        }
+        return best;
+    }
+
+    bool teleport(const Teleportation& move) {
+        const double before = loop_.state().energy;
+        // merge() moves the last region to the larger label of the pair.
+        const auto last = static_cast<std::uint32_t>(loop_.state().regions() - 1);
+        loop_.merge(move.merge.a, move.merge.b);
+        if (!loop_.split(move.split == last ? move.merge.b : move.split)) return false;
+        loop_.lloyd(std::min(trial_iterations, paper_.lloyd_iterations), FloodScope::affected, false);
+        if (loop_.state().energy > hopeless_factor * before) return false;
+        loop_.lloyd(paper_.lloyd_iterations, FloodScope::all, true);
+        best_.note(loop_.state());
+        return true;
+    }
+
+    /// Share of the call: the flow has 0.2 to 0.9 of it.
+    double progress() const {
+        const auto count = static_cast<double>(loop_.state().regions());
+        const double share = wanted_ > 0 ? count / static_cast<double>(wanted_) : count / (count + 20);
+        return 0.2 + 0.6 * std::min(share, 1.0);
+    }
+
+    const PaperOptions& paper_;
+    std::size_t wanted_;
+    const runtime::RunControl& control_;
+    VariationalLoop loop_;
+    BestEnergies best_;
+};
+
+}  // namespace
+
+FlowResult run_paper(const FlowInput& input, const partition::Labels* initial) {
+    if (input.options.method == Method::hierarchical) return run_hierarchical(input);
+    PaperFlow flow(input);
+    FlowResult result;
+    try {
+        result.stop = initial != nullptr ? flow.refine(*initial) : flow.optimise();
+        result.labels = flow.loop().state().labels;
+    } catch (const runtime::Stopped& stopped) {
+        result.partial = true;
+        result.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
+        result.labels = flow.loop().kept().labels;
+    }
+    result.regions = partition::compact(result.labels);
+    result.energies = std::move(flow.loop().energies);
+    return result;
+}
+
+}  // namespace quadseg::flow
