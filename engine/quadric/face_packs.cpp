@@ -1,5 +1,6 @@
 #include "quadric/face_packs.h"
 
+#include "quadric/lane_moments.h"
 #include "quadric/normal_equations.h"
 #include "quadric/sheets.h"
 #include "quadric/triangle_moments.h"
@@ -13,23 +14,6 @@ namespace {
 
 constexpr double floor_share = 0.05;        // of the median |∇f⁰(c_t)| (MATH.md §3)
 constexpr std::size_t median_sample = 512;  // faces, evenly spaced, that the median is taken of
-
-struct LaneMoments {
-    Pack area[35]{};
-    Pack normal[12]{};
-
-    void add(const Pack* t, const Pack* n, const Pack& w2, const Pack& w1) noexcept {
-        for (std::size_t i = 0; i < 35; ++i) area[i] += w2 * t[i];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Pack w = w1 * n[axis];
-            for (std::size_t k = 0; k < 4; ++k) normal[4 * axis + k] += w * t[k];
-        }
-    }
-    void sum(Moments& m) const noexcept {
-        for (std::size_t i = 0; i < 35; ++i) m.area[i] = horizontal_sum(area[i]);
-        for (std::size_t i = 0; i < 12; ++i) m.normal[i] = horizontal_sum(normal[i]);
-    }
-};
 
 struct PackGradient {
     Pack x, y, z;
@@ -102,8 +86,7 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments) : faces_(reg
         }
         Pack t[35];
         triangle_moments(&f.corners[0], f.area, t);
-        const Pack one = Pack{} + 1.0;
-        sum.add(t, f.normal, one, one);
+        sum.add(t, f.normal);
         normal_area += f.area * (f.normal[0] * f.normal[0] + f.normal[1] * f.normal[1] + f.normal[2] * f.normal[2]);
     }
     sum.sum(moments_);
