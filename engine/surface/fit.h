@@ -21,11 +21,13 @@ struct FitOptions {
     bool robust =
         true;  ///< Cauchy weights with scale 3·median |d|, re-estimated: trim-curve vertices may be off by 1e-5
     double minimum_scale = 1e-12;  ///< of the robust scale, in the points' unit
+    double hopeless =
+        0;  ///< give up after 5 steps if the median |d| is still above this, in the points' unit; 0: never
 };
 
 struct SurfaceFit {
     Surface surface;
-    bool ok = false;                               ///< enough independent points, finite, radius below 1e4 extents
+    bool ok = false;                               ///< the points fix all parameters, finite, radius below 1e4 extents
     double rms = 0;                                ///< of signed distances, unweighted
     double median = 0, q90 = 0, q97 = 0, max = 0;  ///< of |distance|
 };

@@ -15,8 +15,8 @@ using namespace samples;
 
 std::vector<Surface> typical_surfaces() {
     const Vec3 a = normalized({.3, -.5, .8}), o{.2, -.1, .4};
-    return {plane(o, a),           sphere(o, .7),          cylinder(o, a, .4),  cone(o, a, .5),
-            cone(o, a, 1.3),       torus(o, a, .8, .25),   torus(o, a, .3, .5), torus(o, a, -.3, .5),
+    return {plane(o, a),           sphere(o, .7),        cylinder(o, a, .4),  cone(o, a, .5),
+            cone(o, a, 1.3),       torus(o, a, .8, .25), torus(o, a, .3, .5), torus(o, a, -.3, .5),
             torus(o, a, 1e-9, .5), torus(o, a, .25, .2)};
 }
 

@@ -5,6 +5,7 @@
 
 #include "math/vec3.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -101,6 +102,75 @@ inline Vec3 random_point_on(const Surface& s, Random& random) {
             return point_on(s, random.uniform(-pi, pi), random.uniform(.01, 3));
         default:
             return point_on(s, random.uniform(-pi, pi), random.uniform(-.999 * limit, .999 * limit));
+    }
+}
+
+inline Vec3 true_normal(const Surface& s, const Vec3& p) {
+    const Vec3 o = to_vec3(s.point), a = normalized(to_vec3(s.axis)), u = p - o;
+    const double z = dot(u, a), side = s.outward ? 1 : -1;
+    const Vec3 radial = normalized(u - z * a);
+    switch (s.type) {
+        case SurfaceType::plane:
+            return a;
+        case SurfaceType::sphere:
+            return side * normalized(u);
+        case SurfaceType::cylinder:
+            return side * radial;
+        case SurfaceType::cone:
+            return side * (std::cos(s.half_angle) * radial - std::sin(s.half_angle) * a);
+        default:
+            return side * normalized(u - s.radius * radial);
+    }
+}
+
+/// Vertices of a patch and normals at them, bent as those of coarse faces are.
+struct Patch {
+    std::vector<Vec3> points, normals;
+};
+
+struct Range {
+    double low, high;
+    int count;
+    double at(int i) const { return count == 1 ? low : low + (high - low) * i / (count - 1); }
+};
+
+/// A grid on the surface: u around the axis, v as in point_on; normals bent by random angles up to `bend`.
+inline Patch grid(const Surface& s, Range u, Range v, double bend = 0, std::uint64_t seed = 1) {
+    Patch patch;
+    Random random(seed);
+    for (int i = 0; i < u.count; ++i) {
+        for (int j = 0; j < v.count; ++j) {
+            const Vec3 p = point_on(s, u.at(i), v.at(j));
+            patch.points.push_back(p);
+            patch.normals.push_back(normalized(true_normal(s, p) + random.uniform(0, bend) * random.direction()));
+        }
+    }
+    return patch;
+}
+
+inline void add_noise(Patch& patch, double sigma, std::uint64_t seed = 9) {
+    Random random(seed);
+    for (Vec3& p : patch.points) p += sigma * Vec3{random.gauss(), random.gauss(), random.gauss()};
+}
+
+/// Largest difference of the parameters: lengths over `size`, directions in radians, the same surface being written in
+/// different ways (axis point, sign of the axis).
+inline double parameter_error(const Surface& a, const Surface& b, double size) {
+    if (a.type != b.type) return 1e300;
+    const Vec3 pa = to_vec3(a.point), pb = to_vec3(b.point), aa = to_vec3(a.axis), ab = to_vec3(b.axis);
+    const double turn = std::min(norm(aa - ab), norm(aa + ab)), radius = std::abs(a.radius - b.radius) / size;
+    const Vec3 shift = (pa - pb) / size;
+    switch (a.type) {
+        case SurfaceType::plane:
+            return std::max(norm(aa - ab), std::abs(dot(shift, ab)));
+        case SurfaceType::sphere:
+            return std::max(norm(shift), radius);
+        case SurfaceType::cylinder:
+            return std::max({norm(shift - dot(shift, ab) * ab), turn, radius});
+        case SurfaceType::cone:
+            return std::max({norm(shift), norm(aa - ab), std::abs(a.half_angle - b.half_angle)});
+        default:
+            return std::max({norm(shift), turn, radius, std::abs(a.minor_radius - b.minor_radius) / size});
     }
 }
 

@@ -1,0 +1,19 @@
+// Linear starts of the typed fits, on local points.
+#pragma once
+
+#include "surface/fit.h"
+#include "surface/local_points.h"
+
+namespace quadseg::surface {
+
+Surface start_plane(const LocalPoints& p);
+Surface start_sphere(const LocalPoints& p);
+Surface start_cylinder(const LocalPoints& p);
+Surface start_cone(const LocalPoints& p);
+/// The apex and half angle that the points show about the axis of a cylinder.
+Surface start_cone_from(const Surface& cylinder, const LocalPoints& p);
+Surface start_torus(const LocalPoints& p);
+/// The circle that the points show in the half planes through the axis (point, direction).
+Surface start_torus_about(const Vec3& point, const Vec3& direction, const LocalPoints& p);
+
+}  // namespace quadseg::surface

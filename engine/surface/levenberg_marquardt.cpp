@@ -1,0 +1,234 @@
+#include "surface/levenberg_marquardt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace quadseg::surface {
+
+namespace {
+
+constexpr double first_damping = 1e-4, least_damping = 1e-9, most_damping = 1e8;
+// In units of the points' RMS radius: below, distances are rounding.
+constexpr double rounding = 4e-16;
+// Squared sine of the angle between a parameter's effect and those of the others, below which the points do not tell
+// them apart.
+constexpr double indistinguishable = 1e-13;
+constexpr int hopeless_after = 5;
+
+template <int K>
+struct NormalEquations {
+    double h[K][K];
+    double g[K];
+};
+
+template <SurfaceType type>
+class Problem {
+  public:
+    static constexpr int K = parameters_of<type>;
+
+    Problem(LocalPoints& points, const FitOptions& options)
+        : p_(points), robust_(options.robust), least_scale_(options.minimum_scale / points.extent) {}
+
+    void distances(const ShapeFrame& f, double* out) const {
+        const ShapeDistance<type> shape(f);
+        for (std::size_t i = 0; i < p_.padded(); ++i) {
+            const double x = p_.x[i] - f.p.x, y = p_.y[i] - f.p.y, z = p_.z[i] - f.p.z;
+            out[i] = shape.distance(f.n.x * x + f.n.y * y + f.n.z * z, f.g.x * x + f.g.y * y + f.g.z * z,
+                                    f.b.x * x + f.b.y * y + f.b.z * z);
+        }
+    }
+
+    double scale_of(const double* distance) const {
+        return std::max(3 * median_magnitude(distance, p_.size(), p_.sorted), std::max(least_scale_, rounding));
+    }
+
+    /// Σ w ρ(d): d²/2, or Cauchy's σ²/2 log(1 + (d/σ)²).
+    double cost(const double* distance, double scale) const {
+        double sum = 0;
+        if (!robust_) {
+            for (std::size_t i = 0; i < p_.size(); ++i) sum += p_.weight[i] * distance[i] * distance[i];
+            return 0.5 * sum;
+        }
+        const double inverse = 1 / (scale * scale);
+        for (std::size_t i = 0; i < p_.size(); ++i)
+            sum += p_.weight[i] * std::log1p(distance[i] * distance[i] * inverse);
+        return 0.5 * scale * scale * sum;
+    }
+
+    NormalEquations<K> normal_equations(const ShapeFrame& f, double scale) const {
+        constexpr int pairs = K * (K + 1) / 2 + K;
+        alignas(64) double sums[pairs][lane_count] = {};
+        alignas(64) double column[K][lane_count], weighted[K][lane_count], d[lane_count], w[lane_count];
+        const ShapeDistance<type> shape(f);
+        const double inverse = robust_ ? 1 / (scale * scale) : 0;
+        for (std::size_t first = 0; first < p_.padded(); first += lane_count) {
+            for (std::size_t l = 0; l < lane_count; ++l) {
+                const double x = p_.x[first + l] - f.p.x, y = p_.y[first + l] - f.p.y, z = p_.z[first + l] - f.p.z;
+                d[l] = shape.derivatives(f.n.x * x + f.n.y * y + f.n.z * z, f.g.x * x + f.g.y * y + f.g.z * z,
+                                         f.b.x * x + f.b.y * y + f.b.z * z,
+                                         [&](int i) -> double& { return column[i][l]; });
+                w[l] = p_.weight[first + l] / (1 + d[l] * d[l] * inverse);
+            }
+            int pair = 0;
+            for (int i = 0; i < K; ++i) {
+                for (std::size_t l = 0; l < lane_count; ++l) weighted[i][l] = w[l] * column[i][l];
+                for (int j = 0; j <= i; ++j, ++pair)
+                    for (std::size_t l = 0; l < lane_count; ++l) sums[pair][l] += weighted[i][l] * column[j][l];
+                for (std::size_t l = 0; l < lane_count; ++l) sums[pair][l] += weighted[i][l] * d[l];
+                ++pair;
+            }
+        }
+        NormalEquations<K> e;
+        int pair = 0;
+        auto total = [&] {
+            double sum = 0;
+            for (double v : sums[pair]) sum += v;
+            ++pair;
+            return sum;
+        };
+        for (int i = 0; i < K; ++i) {
+            for (int j = 0; j <= i; ++j) e.h[i][j] = e.h[j][i] = total();
+            e.g[i] = total();
+        }
+        return e;
+    }
+
+    /// Cholesky of the system scaled to a unit diagonal plus damping. False: not positive definite. smallest: least
+    /// squared pivot.
+    static bool solve(const NormalEquations<K>& e, double damping, double* step, double& smallest) {
+        double s[K], l[K][K], v[K];
+        smallest = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < K; ++i) {
+            s[i] = e.h[i][i] > 0 ? 1 / std::sqrt(e.h[i][i]) : 0;
+            if (!std::isfinite(s[i])) return false;
+        }
+        for (int i = 0; i < K; ++i) {
+            for (int j = 0; j <= i; ++j) {
+                double sum = i == j ? 1 + damping : e.h[i][j] * s[i] * s[j];
+                for (int k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
+                if (i == j) {
+                    if (s[i] == 0) sum = 0;
+                    smallest = std::min(smallest, sum);
+                    if (!(sum > 1e-15)) return false;
+                    l[i][i] = std::sqrt(sum);
+                } else {
+                    l[i][j] = sum / l[j][j];
+                }
+            }
+        }
+        for (int i = 0; i < K; ++i) {
+            double sum = -e.g[i] * s[i];
+            for (int k = 0; k < i; ++k) sum -= l[i][k] * v[k];
+            v[i] = sum / l[i][i];
+        }
+        for (int i = K - 1; i >= 0; --i) {
+            double sum = v[i];
+            for (int k = i + 1; k < K; ++k) sum -= l[k][i] * v[k];
+            v[i] = sum / l[i][i];
+        }
+        for (int i = 0; i < K; ++i) step[i] = v[i] * s[i];
+        return true;
+    }
+
+    Adjustment run(const ShapeFrame& start, const FitOptions& options) {
+        Adjustment best;
+        best.frame = start;
+        distances(start, p_.distance);
+        double scale = scale_of(p_.distance), current = cost(p_.distance, scale), damping = first_damping;
+        best.finite = std::isfinite(current);
+        if (!best.finite) return best;
+        const double hopeless = options.hopeless / p_.extent;
+        double smallest = 0;
+        int plateau = 0, accepted = 0;
+        bool fresh = false;
+        NormalEquations<K> e{};
+        for (int iteration = 0; iteration < options.iterations; ++iteration) {
+            if (!fresh) e = normal_equations(best.frame, scale);
+            fresh = true;
+            double step[K];
+            if (!solve(e, damping, step, smallest)) {
+                damping = std::max(damping * 10, 1e-6);
+                if (damping > most_damping) break;
+                continue;
+            }
+            limit(step);
+            const ShapeFrame next = stepped(best.frame, step);
+            distances(next, p_.trial);
+            const double cost_there = cost(p_.trial, scale);
+            if (!(cost_there <= current)) {
+                // Rounding is all that is left, or the step was too long.
+                if (scale <= 100 * rounding || current - cost_there > -1e-11 * current) break;
+                damping = std::max(damping * 10, 1e-6);
+                if (damping > most_damping) break;
+                continue;
+            }
+            best.frame = next;
+            std::swap(p_.distance, p_.trial);
+            fresh = false;
+            ++accepted;
+            const double gain = current - cost_there;
+            damping = damping * 0.02 < least_damping ? 0 : damping * 0.02;
+            const double scale_there = robust_ ? scale_of(p_.distance) : scale;
+            plateau = gain <= 1e-9 * current && scale_there > 0.999 * scale ? plateau + 1 : 0;
+            scale = scale_there;
+            current = robust_ ? cost(p_.distance, scale) : cost_there;
+            double longest = 0;
+            for (double v : step) longest = std::max(longest, std::abs(v));
+            if (plateau >= 2 || longest < 1e-15 || !(current > 0)) break;
+            if (hopeless > 0 && accepted == hopeless_after &&
+                median_magnitude(p_.distance, p_.size(), p_.sorted) > hopeless)
+                break;
+        }
+        best.median = median_magnitude(p_.distance, p_.size(), p_.sorted);
+        double step[K];
+        e = normal_equations(best.frame, scale);
+        best.determined = solve(e, 0, step, smallest) && smallest > indistinguishable;
+        return best;
+    }
+
+  private:
+    /// Rotations of more than half a radian leave the neighbourhood in which the derivatives mean something.
+    static void limit(double* step) {
+        double turn = 0;
+        for (int i = 1; i < 3; ++i) turn = std::max(turn, std::abs(step[i]));
+        if constexpr (K >= 5) turn = std::max(turn, std::abs(step[3]));
+        if constexpr (K >= 6) turn = std::max(turn, std::abs(step[5]));
+        if (turn > 0.5)
+            for (int i = 0; i < K; ++i) step[i] *= 0.5 / turn;
+    }
+
+    LocalPoints& p_;
+    bool robust_;
+    double least_scale_;
+};
+
+}  // namespace
+
+double median_magnitude(const double* values, std::size_t n, double* scratch) {
+    if (n == 0) return 0;
+    for (std::size_t i = 0; i < n; ++i) scratch[i] = std::abs(values[i]);
+    for (std::size_t i = 0; i < n; ++i)
+        if (std::isnan(scratch[i])) return std::numeric_limits<double>::infinity();
+    std::nth_element(scratch, scratch + n / 2, scratch + n);
+    return scratch[n / 2];
+}
+
+Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options) {
+    switch (start.type) {
+        case SurfaceType::plane:
+            return Problem<SurfaceType::plane>(points, options).run(start, options);
+        case SurfaceType::sphere:
+            return Problem<SurfaceType::sphere>(points, options).run(start, options);
+        case SurfaceType::cylinder:
+            return Problem<SurfaceType::cylinder>(points, options).run(start, options);
+        case SurfaceType::cone:
+            return Problem<SurfaceType::cone>(points, options).run(start, options);
+        case SurfaceType::torus:
+            return Problem<SurfaceType::torus>(points, options).run(start, options);
+        default:
+            return {};
+    }
+}
+
+}  // namespace quadseg::surface

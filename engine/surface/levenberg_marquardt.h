@@ -1,0 +1,24 @@
+// Levenberg–Marquardt on exact distances for the frames of shape_frame.h.
+#pragma once
+
+#include "surface/fit.h"
+#include "surface/local_points.h"
+#include "surface/shape_frame.h"
+
+namespace quadseg::surface {
+
+struct Adjustment {
+    ShapeFrame frame;
+    double median = 0;        ///< of |distance|, in the local points' unit
+    bool determined = false;  ///< the points fix all parameters of the type
+    bool finite = false;
+};
+
+/// Minimises the (robust) sum of squared distances from `start`. options.hopeless and minimum_scale are in the points'
+/// own unit.
+Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options);
+
+/// Median of |values[0 … n)| with `scratch` of the same size.
+double median_magnitude(const double* values, std::size_t n, double* scratch);
+
+}  // namespace quadseg::surface
