@@ -100,7 +100,8 @@ void FileContents::read_pipe(int descriptor, const runtime::RunControl& control)
     }
 }
 
-void FileContents::unify_line_ends() noexcept {
+void FileContents::unify_text() noexcept {
+    if (text().starts_with("\xEF\xBB\xBF")) std::fill_n(data_.get(), 3, ' ');
     if (std::memchr(data_.get(), '\n', size_) == nullptr) std::replace(data_.get(), data_.get() + size_, '\r', '\n');
 }
 

@@ -34,8 +34,8 @@ class FileContents {
     std::string_view text() const noexcept { return {data_.get(), size_}; }
     const std::string& path() const noexcept { return path_; }
 
-    /// Old Macintosh files end their lines in '\r' alone: makes every '\r' a '\n' if there is no '\n' at all.
-    void unify_line_ends() noexcept;
+    /// Blanks out a byte order mark of UTF-8; where no line ends in '\n' (old Macintosh files), makes every '\r' one.
+    void unify_text() noexcept;
 
     [[noreturn]] void fail_at_line(const Fault& fault) const;
     [[noreturn]] void fail_at_byte(const Fault& fault) const;

@@ -40,6 +40,19 @@ bool begins_obj(std::string_view word) noexcept {
     return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
 }
 
+constexpr std::size_t inspected_bytes = 512;
+
+bool looks_binary(const FileContents& file) noexcept {
+    return file.text().substr(0, inspected_bytes).find('\0') != std::string_view::npos;
+}
+bool is_text(const FileContents& file) noexcept {
+    const std::string_view text = file.text();
+    if (text.starts_with("ply") && text.substr(0, inspected_bytes).find("format binary") != std::string_view::npos) {
+        return false;
+    }
+    return !looks_binary(file) && !has_binary_stl_size(text);
+}
+
 /// What an unreadable file is likely to be, for the message.
 std::string foreign_format(const FileContents& file) {
     const std::string_view text = file.text();
@@ -47,7 +60,7 @@ std::string foreign_format(const FileContents& file) {
     if (text.starts_with("PK\x03\x04")) return "it is a ZIP archive (3MF?); convert it first";
     if (text.starts_with("glTF")) return "it is binary glTF; convert it first";
     if (text.starts_with("ISO-10303-21")) return "it is a STEP file, not a mesh; tessellate it first";
-    if (text.substr(0, 512).find('\0') != std::string_view::npos) return "it is binary data of an unknown kind";
+    if (looks_binary(file)) return "it is binary data of an unknown kind";
     return "its first word is " + quoted_word(first_word(file).empty() ? file.end() : first_word(file).data());
 }
 
@@ -60,7 +73,8 @@ Format recognise(const FileContents& file) {
     if (has_binary_stl_size(text)) return Format::stl_binary;
     const std::string_view word = first_word(file);
     if (is_off_keyword(word)) return Format::off;
-    if (lower_case(word.substr(0, 6)) == "solid") return Format::stl_ascii;
+    // A truncated binary file may begin so too.
+    if (lower_case(word) == "solid") return looks_binary(file) ? Format::stl_binary : Format::stl_ascii;
     if (begins_obj(word)) return Format::obj;
     if (ending == "off") return Format::off;
     if (ending == "obj") return Format::obj;
@@ -70,8 +84,8 @@ Format recognise(const FileContents& file) {
 }
 
 Mesh read_contents(FileContents& file, const runtime::RunControl& control) {
+    if (is_text(file)) file.unify_text();
     const Format format = recognise(file);
-    if (format == Format::off || format == Format::obj || format == Format::stl_ascii) file.unify_line_ends();
     Mesh mesh;
     switch (format) {
         case Format::off:
