@@ -57,6 +57,20 @@ WorkMesh build_work_mesh(const MeshView& input, const runtime::RunControl& contr
     return mesh;
 }
 
+std::size_t matching_edge(const WorkMesh& mesh, std::size_t f, std::size_t k) noexcept {
+    const auto& back = mesh.neighbors[static_cast<std::size_t>(mesh.neighbors[f][k])];
+    const auto& t = mesh.faces[static_cast<std::size_t>(mesh.neighbors[f][k])];
+    const auto face = static_cast<std::int32_t>(f);
+    const Vec3 a = mesh.corner(f, static_cast<int>(k)), b = mesh.corner(f, static_cast<int>((k + 1) % 3));
+    std::size_t match = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+        if (back[j] != face) continue;
+        match = j;
+        if (mesh.positions[t[j]] == b && mesh.positions[t[(j + 1) % 3]] == a) return j;
+    }
+    return match;
+}
+
 VertexFaces vertex_faces(const WorkMesh& mesh) {
     VertexFaces result;
     result.begin.assign(mesh.vertex_count() + 1, 0);

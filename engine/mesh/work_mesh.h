@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace quadseg::mesh {
@@ -51,6 +52,9 @@ struct WorkMesh {
     Vec3 corner(std::size_t f, int k) const noexcept { return positions[faces[f][static_cast<std::size_t>(k)]]; }
     Vec3 centroid(std::size_t f) const noexcept { return (corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3.0; }
 };
+
+/// Edge j of face g = neighbors[f][k] (not no_face) that is edge k of f, also where stitched faces share several edges.
+std::size_t matching_edge(const WorkMesh& mesh, std::size_t f, std::size_t k) noexcept;
 
 /// Checks, repairs, reorders. Parallel, deterministic, O(F). Throws Error (invalid_mesh, empty_mesh), Stopped.
 WorkMesh build_work_mesh(const MeshView& mesh, const runtime::RunControl& control);
