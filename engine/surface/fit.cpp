@@ -179,28 +179,28 @@ SurfaceFit fit(SurfaceType type, const PointSet& p, const FitOptions& options) {
     const bool from_points = type == SurfaceType::plane || type == SurfaceType::sphere;
     if (!points.usable() || (points.normals.empty() && !from_points)) return failed(type);
     Attempt best;
+    auto enough = [&] { return best.ok && best.median <= exact_fit; };
+    auto attempt_from = [&](const Surface& start) {
+        const Attempt next = attempt(start, type, points, options);
+        if (better(next, best)) best = next;
+        return enough();
+    };
     switch (type) {
         case SurfaceType::plane:
-            best = attempt(start_plane(points), type, points, options);
+            attempt_from(start_plane(points));
             break;
         case SurfaceType::sphere:
-            best = attempt(start_sphere(points), type, points, options);
+            attempt_from(start_sphere(points));
             break;
         case SurfaceType::cylinder:
-            best = attempt(start_cylinder(points), type, points, options);
+            if (!attempt_from(start_cylinder(points))) attempt_from(start_cylinder_along(points));
             break;
-        case SurfaceType::cone: {
-            best = attempt(start_cone(points), type, points, options);
-            if (best.ok && best.median <= exact_fit) break;
-            const Surface cylinder = start_cylinder(points);
-            const Attempt second = attempt(start_cone_from(cylinder, points), type, points, options);
-            if (better(second, best)) best = second;
+        case SurfaceType::cone:
+            if (!attempt_from(start_cone(points))) attempt_from(start_cone_from(start_cylinder(points), points));
             break;
-        }
-        default: {
-            best = attempt(start_torus(points), type, points, options);
-            break;
-        }
+        default:
+            if (attempt_from(start_torus(points, 0)) || attempt_from(start_torus(points, 1))) break;
+            attempt_from(start_torus_from(start_cylinder(points), points));
     }
     return finished(best, type, true, points, p);
 }
@@ -233,7 +233,7 @@ Surface initial_cone(const PointSet& p) {
     return initial(p, SurfaceType::cone, start_cone);
 }
 Surface initial_torus(const PointSet& p) {
-    return initial(p, SurfaceType::torus, start_torus);
+    return initial(p, SurfaceType::torus, [](const LocalPoints& points) { return start_torus(points); });
 }
 
 }  // namespace quadseg::surface

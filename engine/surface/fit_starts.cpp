@@ -165,11 +165,9 @@ Surface start_sphere(const LocalPoints& p) {
     return s;
 }
 
-Surface start_cylinder(const LocalPoints& p) {
-    Symmetric3 m;
-    for (std::size_t i = 0; i < p.normals.size(); ++i) m.add_outer(p.normals[i], p.weight[i]);
-    const EigenSystem e = eigen_decomposition(m);
-    const Vec3 axis = e.vectors[0], ex = e.vectors[1], ey = e.vectors[2];
+namespace {
+
+Surface cylinder_along(const Vec3& axis, const Vec3& ex, const Vec3& ey, const LocalPoints& p) {
     Surface s = make(SurfaceType::cylinder, {}, axis);
     auto at = [&](std::size_t i) {
         const Vec3 u = p.point(i);
@@ -203,6 +201,20 @@ Surface start_cylinder(const LocalPoints& p) {
     s.point = to_array(best.x * ex + best.y * ey);
     s.radius = best.radius;
     return s;
+}
+
+}  // namespace
+
+Surface start_cylinder(const LocalPoints& p) {
+    Symmetric3 m;
+    for (std::size_t i = 0; i < p.normals.size(); ++i) m.add_outer(p.normals[i], p.weight[i]);
+    const EigenSystem e = eigen_decomposition(m);
+    return cylinder_along(e.vectors[0], e.vectors[1], e.vectors[2], p);
+}
+
+Surface start_cylinder_along(const LocalPoints& p) {
+    const EigenSystem e = eigen_decomposition(covariance_of_points(p));
+    return cylinder_along(e.vectors[2], e.vectors[0], e.vectors[1], p);
 }
 
 Surface start_cone(const LocalPoints& p) {
@@ -280,7 +292,7 @@ Surface start_torus_about(const Vec3& point, const Vec3& direction, const LocalP
     return s;
 }
 
-Surface start_torus(const LocalPoints& p) {
+Surface start_torus(const LocalPoints& p, int rank) {
     // Normal lines (n, x×n) meet the axis (a, m): n·m + a·(x×n) = 0, the 6×6 line complex, m eliminated.
     Symmetric3 nn, qq;
     double nq[3][3] = {};
@@ -302,26 +314,54 @@ Surface start_torus(const LocalPoints& p) {
     const EigenSystem e = eigen_decomposition({reduced[0][0], 0.5 * (reduced[0][1] + reduced[1][0]),
                                                0.5 * (reduced[0][2] + reduced[2][0]), reduced[1][1],
                                                0.5 * (reduced[1][2] + reduced[2][1]), reduced[2][2]});
-    Surface best = make(SurfaceType::torus, {}, e.vectors[0]);
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 2; ++k) {
-        const Vec3 a = e.vectors[k];
-        const Vec3 m = -1.0 * (a.x * columns[0] + a.y * columns[1] + a.z * columns[2]);
-        const Vec3 point = cross(a, m);
-        const Surface s = start_torus_about(point, a, p);
-        const Vec3 centre = to_vec3(s.point);
-        double error = 0;
-        for (std::size_t i = 0; i < p.size(); ++i) {
-            const Vec3 u = p.point(i) - centre;
-            const double z = dot(u, a), d = std::hypot(norm(u - z * a) - s.radius, z) - s.minor_radius;
-            error += p.weight[i] * d * d;
-        }
-        if (s.minor_radius > 0 && error < least) {
-            least = error;
-            best = s;
+    const Vec3 a = e.vectors[rank];
+    return start_torus_about(cross(a, -1.0 * (a.x * columns[0] + a.y * columns[1] + a.z * columns[2])), a, p);
+}
+
+Surface start_torus_from(const Surface& cylinder, const LocalPoints& p) {
+    // Distances from the cylinder: −½ z² k (e·n) for a spine of curvature k e, beside what a shifted, turned and
+    // resized cylinder explains.
+    constexpr int K = 7;
+    const Vec3 point = to_vec3(cylinder.point), t = to_vec3(cylinder.axis), ex = any_perpendicular(t),
+               ey = cross(t, ex);
+    double m[K][K] = {}, right[K] = {};
+    double z0 = 0, sum = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        z0 += p.weight[i] * dot(p.point(i) - point, t);
+        sum += p.weight[i];
+    }
+    z0 /= sum > 0 ? sum : 1;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Vec3 u = p.point(i) - point;
+        const double z = dot(u, t) - z0, x = dot(u, ex), y = dot(u, ey), rho = std::hypot(x, y);
+        if (!(rho > 0)) continue;
+        const double nx = x / rho, ny = y / rho,
+                     row[K] = {-.5 * z * z * nx, -.5 * z * z * ny, 1, nx, ny, z * nx, z * ny};
+        for (int r = 0; r < K; ++r) {
+            for (int c = 0; c <= r; ++c) m[r][c] += p.weight[i] * row[r] * row[c];
+            right[r] += p.weight[i] * row[r] * (rho - cylinder.radius);
         }
     }
-    return best;
+    // Gaussian elimination from the last unknown down, with a ridge: what is left gives k e.
+    for (int r = 0; r < K; ++r) m[r][r] += 1e-12 * (m[r][r] + sum);
+    for (int r = 0; r < K; ++r)
+        for (int c = r + 1; c < K; ++c) m[r][c] = m[c][r];
+    for (int k = K - 1; k > 0; --k) {
+        for (int r = 0; r < k; ++r) {
+            const double f = m[r][k] / m[k][k];
+            for (int c = 0; c < k; ++c) m[r][c] -= f * m[k][c];
+            right[r] -= f * right[k];
+        }
+    }
+    const double kx = right[0] / m[0][0], ky = (right[1] - m[1][0] * kx) / m[1][1], k = std::hypot(kx, ky);
+    Surface s = make(SurfaceType::torus, {}, t);
+    if (!(k > 0)) return s;
+    const Vec3 e = (kx / k) * ex + (ky / k) * ey;
+    s.axis = to_array(cross(t, e));
+    s.point = to_array(point + z0 * t + e / k);
+    s.radius = 1 / k;
+    s.minor_radius = cylinder.radius;
+    return s;
 }
 
 }  // namespace quadseg::surface

@@ -9,10 +9,15 @@ namespace quadseg::surface {
 Surface start_plane(const LocalPoints& p);
 Surface start_sphere(const LocalPoints& p);
 Surface start_cylinder(const LocalPoints& p);
+/// About the longest direction of the points, normals unused: long strips, whose normals tell the axis too coarsely.
+Surface start_cylinder_along(const LocalPoints& p);
 Surface start_cone(const LocalPoints& p);
 /// The apex and half angle that the points show about the axis of a cylinder.
 Surface start_cone_from(const Surface& cylinder, const LocalPoints& p);
-Surface start_torus(const LocalPoints& p);
+/// From the 6×6 line complex; rank: which eigenvector (0: the best).
+Surface start_torus(const LocalPoints& p, int rank = 0);
+/// A cylinder bent along its axis as the points show: fillets whose major radius is large.
+Surface start_torus_from(const Surface& cylinder, const LocalPoints& p);
 /// The circle that the points show in the half planes through the axis (point, direction).
 Surface start_torus_about(const Vec3& point, const Vec3& direction, const LocalPoints& p);
 

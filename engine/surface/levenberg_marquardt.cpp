@@ -14,6 +14,9 @@ constexpr double rounding = 4e-16;
 // Squared sine of the angle between a parameter's effect and those of the others, below which the points do not tell
 // them apart.
 constexpr double indistinguishable = 1e-13;
+// Mean squared derivative of the distance below which a parameter has no effect at all (the axis of a torus that is a
+// sphere).
+constexpr double no_effect = 1e-15;
 constexpr int hopeless_after = 5;
 
 template <int K>
@@ -181,9 +184,11 @@ class Problem {
                 break;
         }
         best.median = median_magnitude(p_.distance, p_.size(), p_.sorted);
-        double step[K];
+        double step[K], total = 0;
         e = normal_equations(best.frame, scale);
         best.determined = solve(e, 0, step, smallest) && smallest > indistinguishable;
+        for (std::size_t i = 0; i < p_.size(); ++i) total += p_.weight[i];
+        for (int i = 0; i < K; ++i) best.determined = best.determined && e.h[i][i] > no_effect * total;
         return best;
     }
 
