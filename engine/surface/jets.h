@@ -10,10 +10,12 @@
 namespace quadseg::surface {
 
 struct Jet {
-    Vec3 normal;          ///< unit, at the point, oriented along `orientation`
-    double residual = 0;  ///< RMS of the polynomial fit
-    double curvature_min = 0, curvature_max = 0;
-    int order = 0;  ///< 4, 3, 2 by the number of points (≥ 26, 16, 9); 1: plane
+    Vec3 normal;                                  ///< unit, at the point, oriented along `orientation`
+    double residual = 0;                          ///< RMS of the polynomial fit
+    double curvature_min = 0, curvature_max = 0;  ///< principal; positive where the surface bends away from the normal
+                                                  ///< (a ball seen from outside)
+    int order = 0;  ///< 4, 3, 2 by the number of independent points (≥ 26, 16, 9); 1: plane; 0: the orientation is
+                    ///< all there is
 };
 
 /// Jet at points[0] from points (the first being the one of interest); orientation: rough normal.
