@@ -10,6 +10,9 @@
 
 namespace quadseg::exact {
 
+/// No tessellator lets a facet turn further: the coarsest cylinders have 8 facets (45°).
+inline constexpr double largest_facet_turn = 50 * std::numbers::pi / 180;
+
 class FaceFitter {
   public:
     FaceFitter(const Scene& scene, const Surface& surface)
@@ -49,6 +52,10 @@ class FaceFitter {
         fit.step = angle_of_chord(std::sqrt(std::max({squared_norm(a - b), squared_norm(b - c), squared_norm(c - a)})));
         constexpr double degree = std::numbers::pi / 180;
         // A flat face on a curved surface differs from the surface's normal by what that turns across the face.
+        if (fit.step > largest_facet_turn) {
+            fit.angle = std::numeric_limits<double>::infinity();
+            return;
+        }
         const double height = static_cast<double>(scene_.heights[f]);
         const double tilt = height > 0 ? 3 * trim_ / height : 1e9;
         fit.allowed = std::min(3 * degree + 0.7 * fit.step, 52 * degree) + tilt;

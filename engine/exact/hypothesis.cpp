@@ -16,6 +16,7 @@ constexpr std::array<std::size_t, 5> patch_sizes{40, 16, 8, 5, 3};
 constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
                            SurfaceType::torus};
 constexpr double most_gap = 0.3;
+constexpr double hopeless = 1e300;
 
 struct PatchPoints {
     std::vector<std::uint32_t> vertices;
@@ -71,11 +72,15 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
     const FaceFitter fitter(scene, s);
     const surface::SurfaceEvaluator evaluate(s);
     double normals = 0, midpoints = 0;
-    std::size_t counted = 0, edges = 0, exact_edges = 0;
+    std::size_t counted = 0, edges = 0, exact_edges = 0, turned = 0;
     for (const std::uint32_t f : faces) {
         if (!(scene.mesh.areas[f] > 0)) continue;
-        const double angle = fitter(f).angle;
-        normals += angle * angle;
+        const FaceFit fit = fitter(f);
+        if (!(fit.angle <= fit.allowed)) {
+            ++turned;
+            continue;
+        }
+        normals += fit.angle * fit.angle;
         ++counted;
         for (int k = 0; k < 3; ++k) {
             const Vec3 a = scene.mesh.corner(f, k), b = scene.mesh.corner(f, (k + 1) % 3);
@@ -87,7 +92,7 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
             if (d <= tolerance) ++exact_edges;
         }
     }
-    if (counted == 0 || edges == 0) return 1e300;
+    if (counted == 0 || edges == 0 || 5 * turned > faces.size()) return hopeless;
     double cost = normals / static_cast<double>(counted) + midpoints / static_cast<double>(edges) + 1e-7;
     switch (s.type) {
         case SurfaceType::sphere:
@@ -154,7 +159,7 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
             const surface::SurfaceFit fit = surface::fit(type, points, options);
             if (!holds(scene, fit, points, tolerance)) continue;
             const double cost = misfit(scene, fit.surface, faces, tolerance);
-            if (!best || cost < best_cost) {
+            if (cost < hopeless && (!best || cost < best_cost)) {
                 best = fit.surface;
                 best_cost = cost;
             }

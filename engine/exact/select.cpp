@@ -120,7 +120,7 @@ class Selector {
             if (is_alive(c) && k.facets >= 8 && k.surface.type != SurfaceType::plane) steps.emplace_back(k.step, 1);
         }
         // Without any well supported curved surface nothing is known: allow what the crease angle allows.
-        result_.largest_step = steps.empty() ? 0.7 : 1.3 * weighted_quantile(std::move(steps), 0.9);
+        result_.largest_step = steps.empty() ? 0.7 : std::min(0.9, 1.3 * weighted_quantile(std::move(steps), 0.9));
     }
 
     void demand_small_steps() {
