@@ -22,6 +22,7 @@ void append_faces(Mesh& mesh, std::vector<FaceBlock>& blocks, const runtime::Run
         FaceBlock block = std::move(blocks[b]);
         std::uint32_t* out = mesh.triangles.data() + 3 * first_triangle[b];
         std::size_t counter = 0;
+        Triangulator triangulator(mesh.positions);
         if (block.sizes.empty()) {
             control.check();
             std::copy(block.corners.begin(), block.corners.end(), out);
@@ -29,7 +30,7 @@ void append_faces(Mesh& mesh, std::vector<FaceBlock>& blocks, const runtime::Run
         const std::uint32_t* corner = block.corners.data();
         for (const std::uint32_t size : block.sizes) {
             control.check_often(counter);
-            triangulate(mesh.positions, {corner, size}, out);
+            triangulator.cut({corner, size}, out);
             corner += size;
             out += 3 * (std::size_t{size} - 2);
         }

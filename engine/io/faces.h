@@ -31,7 +31,28 @@ struct FaceBlock {
 /// Frees the blocks.
 void append_faces(Mesh& mesh, std::vector<FaceBlock>& blocks, const runtime::RunControl& control);
 
-/// Cuts a polygon of n ≥ 3 corners into n−2 triangles: a fan if it is strictly convex, ears otherwise.
-void triangulate(std::span<const double> positions, std::span<const std::uint32_t> polygon, std::uint32_t* triangles);
+/// Cuts polygons into triangles; keeps its working memory from one to the next.
+class Triangulator {
+  public:
+    struct Point {
+        double x, y;
+    };
+
+    explicit Triangulator(std::span<const double> positions) : positions_(positions) {}
+
+    /// A polygon of n ≥ 3 corners becomes n−2 triangles: a fan if it is strictly convex, ears otherwise.
+    void cut(std::span<const std::uint32_t> polygon, std::uint32_t* triangles);
+
+  private:
+    bool project(std::span<const std::uint32_t> polygon, double& area);
+    bool strictly_convex(double threshold) const noexcept;
+    void cut_ears(std::span<const std::uint32_t> polygon, double threshold, std::uint32_t* triangles);
+    std::size_t find_ear(std::size_t tip, std::size_t left, double threshold) const noexcept;
+    bool is_empty(std::size_t tip, std::size_t left) const noexcept;
+
+    std::span<const double> positions_;
+    std::vector<Point> points_;                 ///< of the polygon, in its plane
+    std::vector<std::size_t> next_, previous_;  ///< a ring of the corners that are not cut off yet
+};
 
 }  // namespace quadseg::io

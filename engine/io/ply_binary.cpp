@@ -295,6 +295,7 @@ class BodyReader {
             control_.check();
             const std::size_t b = begin / block_elements;
             const char* face = starts[b];
+            blocks[b].corners.reserve(4 * (end - begin));
             for (std::size_t f = begin; f < end && !faults[b]; ++f) {
                 face = walk(element, face, [&](std::size_t property, std::int64_t size, const char* entries) {
                     if (property == header_.corner_list) faults[b] = add_face(entries, size, f, blocks[b]);

@@ -55,7 +55,8 @@ Mesh read_stl_binary(const FileContents& file, const runtime::RunControl& contro
     const std::size_t facets = checked_facets(file);
     const char* first = file.begin() + stl_prefix_bytes;
     const auto place_of = [first](std::size_t corner) {
-        return first + corner / 3 * stl_facet_bytes + (corner % 3 + 1) * corner_bytes;
+        const auto c = static_cast<std::uint32_t>(corner);  // divides in fewer cycles
+        return first + std::size_t{c / 3} * stl_facet_bytes + (c % 3 + 1) * corner_bytes;
     };
     const auto position_of = [&](std::size_t corner) {
         const char* p = place_of(corner);

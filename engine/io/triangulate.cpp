@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 namespace quadseg::io {
 namespace {
 
-struct Point2 {
-    double x, y;
-};
+using Point = Triangulator::Point;
 
 /// Twice the signed area of a triangle.
-double turn(const Point2& a, const Point2& b, const Point2& c) noexcept {
+double turn(const Point& a, const Point& b, const Point& c) noexcept {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -29,10 +27,21 @@ void fan(std::span<const std::uint32_t> polygon, std::uint32_t* out) noexcept {
     }
 }
 
-/// The polygon along the largest component of its Newell normal, counter-clockwise; false if it has no area.
-bool project(std::span<const double> positions, std::span<const std::uint32_t> polygon, std::vector<Point2>& points,
-             double& area) {
-    const auto position = [&](std::uint32_t v) { return positions.data() + 3 * std::size_t{v}; };
+}  // namespace
+
+void Triangulator::cut(std::span<const std::uint32_t> polygon, std::uint32_t* triangles) {
+    double area = 0;
+    if (polygon.size() == 3 || polygon.size() > largest_clipped_polygon || !project(polygon, area) ||
+        strictly_convex(straightness * area)) {
+        fan(polygon, triangles);
+    } else {
+        cut_ears(polygon, straightness * area, triangles);
+    }
+}
+
+/// Along the largest component of the Newell normal, so that the outline turns to the left; false if it has no area.
+bool Triangulator::project(std::span<const std::uint32_t> polygon, double& area) {
+    const auto position = [&](std::uint32_t v) { return positions_.data() + 3 * std::size_t{v}; };
     const double* origin = position(polygon[0]);
     double normal[3] = {0, 0, 0};
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -51,104 +60,69 @@ bool project(std::span<const double> positions, std::span<const std::uint32_t> p
     if (!(area > 0) || !std::isfinite(area)) return false;
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     if (normal[axis] < 0) std::swap(u, v);
-    points.clear();
+    points_.clear();
     for (const std::uint32_t corner : polygon) {
         const double* p = position(corner);
-        points.push_back({p[u] - origin[u], p[v] - origin[v]});
+        points_.push_back({p[u] - origin[u], p[v] - origin[v]});
     }
     return true;
 }
 
-/// All turns to the left. A star (winding twice) passes too, but no fan or ear makes sense of that.
-bool strictly_convex(const std::vector<Point2>& points, double threshold) noexcept {
-    const std::size_t n = points.size();
+/// All turns to the left. A star (winding twice) passes too, but neither fan nor ears make sense of that.
+bool Triangulator::strictly_convex(double threshold) const noexcept {
+    const std::size_t n = points_.size();
+    for (std::size_t i = 2; i < n; ++i) {
+        if (!(turn(points_[i - 2], points_[i - 1], points_[i]) > threshold)) return false;
+    }
+    return turn(points_[n - 2], points_[n - 1], points_[0]) > threshold &&
+           turn(points_[n - 1], points_[0], points_[1]) > threshold;
+}
+
+void Triangulator::cut_ears(std::span<const std::uint32_t> polygon, double threshold, std::uint32_t* triangles) {
+    const std::size_t n = polygon.size();
+    next_.resize(n);
+    previous_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-        if (!(turn(points[i], points[(i + 1) % n], points[(i + 2) % n]) > threshold)) return false;
+        next_[i] = (i + 1) % n;
+        previous_[i] = (i + n - 1) % n;
     }
-    return true;
+    std::size_t tip = 1;
+    for (std::size_t left = n; left >= 3; --left) {
+        if (left > 3) tip = find_ear(tip, left, threshold);
+        const std::size_t before = previous_[tip], after = next_[tip];
+        for (const std::size_t corner : {before, tip, after}) *triangles++ = polygon[corner];
+        next_[before] = after;
+        previous_[after] = before;
+        tip = after;
+    }
 }
 
-/// A ring of the corners that are not cut off yet.
-class EarClipper {
-  public:
-    EarClipper(const std::vector<Point2>& points, std::span<const std::uint32_t> polygon, double threshold)
-        : points_(points), polygon_(polygon), threshold_(threshold), next_(points.size()), previous_(points.size()) {
-        const std::size_t n = points.size();
-        for (std::size_t i = 0; i < n; ++i) {
-            next_[i] = (i + 1) % n;
-            previous_[i] = (i + n - 1) % n;
+/// The first ear from `tip` on; where there is none (crossing edges), the corner that turns left most.
+std::size_t Triangulator::find_ear(std::size_t tip, std::size_t left, double threshold) const noexcept {
+    std::size_t best = tip;
+    double best_turn = -HUGE_VAL;
+    for (std::size_t k = 0; k < left; ++k, tip = next_[tip]) {
+        const double t = turn(points_[previous_[tip]], points_[tip], points_[next_[tip]]);
+        if (t > threshold && is_empty(tip, left)) return tip;
+        if (t > best_turn) {
+            best_turn = t;
+            best = tip;
         }
     }
+    return best;
+}
 
-    void clip(std::uint32_t* out) {
-        std::size_t tip = 1;
-        for (std::size_t left = points_.size(); left > 3; --left) {
-            tip = find_ear(tip, left);
-            out = cut(tip, out);
-            const std::size_t after = next_[tip];
-            next_[previous_[tip]] = after;
-            previous_[after] = previous_[tip];
-            tip = after;
-        }
-        cut(tip, out);
+/// No other corner lies in the triangle at `tip`.
+bool Triangulator::is_empty(std::size_t tip, std::size_t left) const noexcept {
+    const Point &a = points_[previous_[tip]], &b = points_[tip], &c = points_[next_[tip]];
+    std::size_t other = next_[next_[tip]];
+    for (std::size_t k = 3; k < left; ++k, other = next_[other]) {
+        const Point& p = points_[other];
+        const auto same = [&](const Point& q) { return p.x == q.x && p.y == q.y; };
+        if (same(a) || same(b) || same(c)) continue;  // a corner that the outline passes twice blocks nothing
+        if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
     }
-
-  private:
-    std::uint32_t* cut(std::size_t tip, std::uint32_t* out) const noexcept {
-        *out++ = polygon_[previous_[tip]];
-        *out++ = polygon_[tip];
-        *out++ = polygon_[next_[tip]];
-        return out;
-    }
-
-    /// The first ear from `tip` on; where there is none (crossing edges), the corner that turns left most.
-    std::size_t find_ear(std::size_t tip, std::size_t left) const noexcept {
-        std::size_t best = tip;
-        double best_turn = -HUGE_VAL;
-        for (std::size_t k = 0; k < left; ++k, tip = next_[tip]) {
-            const double t = turn(points_[previous_[tip]], points_[tip], points_[next_[tip]]);
-            if (t > threshold_ && is_empty(tip, left)) return tip;
-            if (t > best_turn) {
-                best_turn = t;
-                best = tip;
-            }
-        }
-        return best;
-    }
-
-    bool is_empty(std::size_t tip, std::size_t left) const noexcept {
-        const Point2 &a = points_[previous_[tip]], &b = points_[tip], &c = points_[next_[tip]];
-        std::size_t other = next_[next_[tip]];
-        for (std::size_t k = 3; k < left; ++k, other = next_[other]) {
-            const Point2& p = points_[other];
-            const auto same = [&](const Point2& q) { return p.x == q.x && p.y == q.y; };
-            if (same(a) || same(b) || same(c)) continue;  // a corner that the outline passes twice blocks nothing
-            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
-        }
-        return true;
-    }
-
-    const std::vector<Point2>& points_;
-    std::span<const std::uint32_t> polygon_;
-    double threshold_;
-    std::vector<std::size_t> next_, previous_;
-};
-
-}  // namespace
-
-void triangulate(std::span<const double> positions, std::span<const std::uint32_t> polygon, std::uint32_t* triangles) {
-    if (polygon.size() == 3) {
-        std::copy(polygon.begin(), polygon.end(), triangles);
-        return;
-    }
-    std::vector<Point2> points;
-    double area = 0;
-    if (polygon.size() > largest_clipped_polygon || !project(positions, polygon, points, area) ||
-        strictly_convex(points, straightness * area)) {
-        fan(polygon, triangles);
-    } else {
-        EarClipper(points, polygon, straightness * area).clip(triangles);
-    }
+    return true;
 }
 
 }  // namespace quadseg::io

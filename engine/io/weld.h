@@ -42,7 +42,8 @@ struct Weld {
     std::vector<std::uint32_t> first_corner;  ///< a vertex; ascending
 };
 
-/// Corners are dealt out by hash into parts whose tables fit the cache and are filled at once.
+/// Corners that repeat one of a little earlier are found at once; the rest is dealt out by hash into parts whose tables
+/// fit the cache and are filled at the same time.
 template <class KeyOf>
 class Welder {
   public:
@@ -52,8 +53,8 @@ class Welder {
     }
 
     Weld weld() {
-        deal_out();
         std::vector<std::uint32_t> first_of(count_);
+        deal_out(first_of);
         runtime::parallel_for(parts(), 1, [&](std::size_t p) {
             control_.check();
             find_first(part_begin_[p], part_begin_[p + 1], first_of);
@@ -72,20 +73,38 @@ class Welder {
     static constexpr std::size_t largest_part = 16384;
     static constexpr unsigned largest_part_bits = 11;
     static constexpr std::size_t grain = 65536;
+    static constexpr std::size_t recent_slots = 4096;
+    static constexpr auto nothing = static_cast<std::uint32_t>(-1);
 
     std::size_t parts() const noexcept { return std::size_t{1} << part_bits_; }
     std::size_t part_of(std::uint64_t h) const noexcept {
         return part_bits_ == 0 ? 0 : static_cast<std::size_t>(h >> (64U - part_bits_));
     }
 
+    /// first_of[c] = an earlier corner of the block at the same position if it is recent, else c. Counts the latter.
+    void find_recent(std::size_t begin, std::size_t end, std::vector<std::uint32_t>& first_of,
+                     std::size_t* counts) const {
+        std::array<std::uint32_t, recent_slots> recent;
+        recent.fill(nothing);
+        for (std::size_t c = begin; c < end; ++c) {
+            const Key key = key_of_(c);
+            const std::uint64_t h = hash(key);
+            std::uint32_t& slot = recent[h % recent_slots];
+            if (slot == nothing || key_of_(slot) != key) {
+                slot = static_cast<std::uint32_t>(c);
+                ++counts[part_of(h)];
+            }
+            first_of[c] = slot;
+        }
+    }
+
     /// entries_: part after part, corners ascending in each.
-    void deal_out() {
+    void deal_out(std::vector<std::uint32_t>& first_of) {
         const std::size_t blocks = (count_ + grain - 1) / grain;
         std::vector<std::size_t> place(blocks * parts());
         runtime::parallel_blocks(count_, grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
-            std::size_t* counts = &place[begin / grain * parts()];
-            for (std::size_t c = begin; c < end; ++c) ++counts[part_of(hash(key_of_(c)))];
+            find_recent(begin, end, first_of, &place[begin / grain * parts()]);
         });
         std::size_t sum = 0;
         part_begin_.resize(parts() + 1);
@@ -98,11 +117,12 @@ class Welder {
             }
         }
         part_begin_[parts()] = sum;
-        entries_.reset(new Entry[count_]);  // not initialised: each is written below
+        entries_.reset(new Entry[sum]);  // not initialised: each is written below
         runtime::parallel_blocks(count_, grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
             std::size_t* places = &place[begin / grain * parts()];
             for (std::size_t c = begin; c < end; ++c) {
+                if (first_of[c] != c) continue;
                 const Key key = key_of_(c);
                 entries_[places[part_of(hash(key))]++] = {key, static_cast<std::uint32_t>(c)};
             }
@@ -110,16 +130,15 @@ class Welder {
     }
 
     void find_first(std::size_t begin, std::size_t end, std::vector<std::uint32_t>& first_of) const {
-        constexpr auto empty = static_cast<std::uint32_t>(-1);
         const std::size_t slots = std::bit_ceil(2 * (end - begin) + 1);
-        std::vector<std::uint32_t> table(slots, empty);
+        std::vector<std::uint32_t> table(slots, nothing);
         for (std::size_t e = begin; e < end; ++e) {
             const Entry& entry = entries_[e];
             std::size_t slot = hash(entry.key) & (slots - 1);
-            while (table[slot] != empty && entries_[begin + table[slot]].key != entry.key) {
+            while (table[slot] != nothing && entries_[begin + table[slot]].key != entry.key) {
                 slot = (slot + 1) & (slots - 1);
             }
-            if (table[slot] == empty) table[slot] = static_cast<std::uint32_t>(e - begin);
+            if (table[slot] == nothing) table[slot] = static_cast<std::uint32_t>(e - begin);
             first_of[entry.corner] = entries_[begin + table[slot]].corner;
         }
     }
@@ -147,7 +166,8 @@ class Welder {
         runtime::parallel_blocks(count_, grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
             for (std::size_t c = begin; c < end; ++c) {
-                if (first_of[c] != c) result.vertex_of[c] = result.vertex_of[first_of[c]];
+                // A recent corner may itself repeat one further back, which is the first of all.
+                if (first_of[c] != c) result.vertex_of[c] = result.vertex_of[first_of[first_of[c]]];
             }
         });
         return result;

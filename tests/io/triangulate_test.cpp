@@ -18,7 +18,7 @@ std::vector<double> areas(const std::vector<double>& outline) {
     }
     std::vector<std::uint32_t> polygon(n), triangles(3 * (n - 2));
     std::iota(polygon.begin(), polygon.end(), 0U);
-    io::triangulate(positions, polygon, triangles.data());
+    io::Triangulator(positions).cut(polygon, triangles.data());
     std::vector<double> result;
     for (std::size_t t = 0; t < triangles.size(); t += 3) {
         const double* a = &outline[2 * triangles[t]];
