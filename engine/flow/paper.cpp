@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,12 +15,21 @@ namespace quadseg::flow {
 
 namespace {
 
+/// An insertion that saves less than this share of the energy of the region that it splits has failed: a single odd
+/// face was the worst, and the new region did not grow.
+constexpr double least_gain = 0.02;
+/// Rounds of smoothing of the error densities by which the seed of a new region is sought, one attempt after another.
+constexpr std::array<int, 3> smoothing_rounds{0, 8, 64};
 /// Lloyd iterations on the fine mesh after a coarse one: the labels are nearly right already (section 5.2).
 constexpr int refinement_iterations = 6;
 /// A merge, or a teleportation, must pay by this share of the energy: else the loop could merge and insert for ever.
 constexpr double least_progress = 1e-3;
 /// Teleportation pays off, as a rule of thumb of VSA, if the merge costs less than half of what splitting can save.
 constexpr double teleport_share = 0.5;
+/// A merge that costs more than this share of what the last insertion saved would have to be paid back.
+constexpr double worthwhile_share = 0.5;
+/// A teleportation is tried with as many different seeds.
+constexpr std::size_t teleport_attempts = 2;
 /// Iterations of a Lloyd run after which a teleportation that is still worse by this factor is given up.
 constexpr int trial_iterations = 6;
 constexpr double hopeless_factor = 1.5;
@@ -116,7 +126,7 @@ class PaperFlow {
             if (candidates.empty() || !candidates[0].valid) return;
             const partition::MergeCandidate& best = candidates[0];
             const LoopState& state = loop_.state();
-            if (!(best.increase < paper_.merge_tolerance)) return;
+            if (!(best.increase < std::min(paper_.merge_tolerance, most_expensive_merge_))) return;
             if (!best_.is_progress(state.regions() - 1, state.energy + best.increase)) return;
             merge(best.pair);
         }
@@ -134,9 +144,34 @@ class PaperFlow {
         best_.note(loop_.state());
     }
 
+    /// Splits the first region of the paper's order in which the new region grows; where none does, the first region
+    /// that can be split at all. False: there is none.
     bool insert_region() {
-        const std::int32_t region = loop_.region_to_split();
-        if (region < 0 || !loop_.split(static_cast<std::uint32_t>(region))) return false;
+        const std::vector<std::uint32_t> order = loop_.regions_to_split();
+        const LoopState before = loop_.state();
+        const auto untried = [&](std::uint32_t r) { return !fruitless_.contains(before.stamps[r]); };
+        const auto first = std::find_if(order.begin(), order.end(), untried);
+        for (auto r = first; r != order.end(); ++r) {
+            if (!untried(*r)) continue;
+            for (const int rounds : smoothing_rounds) {
+                if (!insert_and_relax(*r, rounds)) break;
+                const double gain = before.energy - loop_.state().energy;
+                if (gain >= least_gain * before.fits[*r].total) {
+                    most_expensive_merge_ = worthwhile_share * gain;
+                    return true;
+                }
+                loop_.restore(before);
+            }
+            fruitless_.insert(before.stamps[*r]);
+        }
+        for (const std::uint32_t r : order) {
+            if (insert_and_relax(r, 0)) return true;
+        }
+        return false;
+    }
+    bool insert_and_relax(std::uint32_t region, int rounds) {
+        const auto face = loop_.face_to_split(region, rounds);
+        if (!face || !loop_.insert(*face)) return false;
         lloyd(FloodScope::affected);
         return true;
     }
@@ -156,15 +191,16 @@ class PaperFlow {
                 throw;
             }
             loop_.restore(before);
-            failed.insert(move->stamps);
+            ++failed[move->stamps];
         }
     }
 
     using Stamps = std::array<std::uint64_t, 3>;
-    using Failures = std::set<Stamps>;
+    using Failures = std::map<Stamps, std::size_t>;  ///< how many attempts have failed
     struct Teleportation {
         partition::RegionPair merge;
         std::uint32_t split = 0;
+        int rounds = 0;
         Stamps stamps;  ///< of the region to split and of the pair
     };
 
@@ -179,9 +215,12 @@ class PaperFlow {
                 if (r == c.pair.a || r == c.pair.b || loop_.face_count(r) < 2) continue;
                 const Stamps stamps{state.stamps[r], state.stamps[c.pair.a], state.stamps[c.pair.b]};
                 const double gain = teleport_share * state.fits[r].total - c.increase;
-                if (!(gain > best_gain) || failed.contains(stamps)) continue;
+                if (!(gain > best_gain)) continue;
+                const auto attempts = failed.find(stamps);
+                const std::size_t attempt = attempts == failed.end() ? 0 : attempts->second;
+                if (attempt >= teleport_attempts) continue;
                 best_gain = gain;
-                best = Teleportation{c.pair, r, stamps};
+                best = Teleportation{c.pair, r, smoothing_rounds[attempt], stamps};
             }
         }
         return best;
@@ -192,7 +231,8 @@ class PaperFlow {
         // merge() moves the last region to the larger label of the pair.
         const auto last = static_cast<std::uint32_t>(loop_.state().regions() - 1);
         loop_.merge(move.merge.a, move.merge.b);
-        if (!loop_.split(move.split == last ? move.merge.b : move.split)) return false;
+        const auto face = loop_.face_to_split(move.split == last ? move.merge.b : move.split, move.rounds);
+        if (!face || !loop_.insert(*face)) return false;
         loop_.lloyd(std::min(trial_iterations, paper_.lloyd_iterations), FloodScope::affected, false);
         if (loop_.state().energy > hopeless_factor * before) return false;
         loop_.lloyd(paper_.lloyd_iterations, FloodScope::all, true);
@@ -212,6 +252,9 @@ class PaperFlow {
     const runtime::RunControl& control_;
     VariationalLoop loop_;
     BestEnergies best_;
+    std::set<std::uint64_t> fruitless_;  ///< stamps of regions in which no insertion grew
+    /// While regions are still being inserted, a merge must cost less than what an insertion saves.
+    double most_expensive_merge_ = std::numeric_limits<double>::max();
 };
 
 }  // namespace

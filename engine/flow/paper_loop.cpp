@@ -297,12 +297,12 @@ bool VariationalLoop::all_valid() const noexcept {
     return std::all_of(state_.fits.begin(), state_.fits.end(), [](const auto& fit) { return fit.valid; });
 }
 
-std::int32_t VariationalLoop::region_to_split() const {
+std::vector<std::uint32_t> VariationalLoop::regions_to_split() const {
     std::vector<partition::InsertionCandidate> regions;
     for (std::size_t r = 0; r < state_.regions(); ++r) {
         regions.push_back({state_.fits[r].total, areas_[r], state_.fits[r].valid, faces_[r].size()});
     }
-    return partition::farthest_region(regions);
+    return partition::farthest_regions(regions);
 }
 
 bool VariationalLoop::insert(std::uint32_t face) {
@@ -322,9 +322,11 @@ bool VariationalLoop::insert(std::uint32_t face) {
     return true;
 }
 
-bool VariationalLoop::split(std::uint32_t region) {
-    const auto face = partition::worst_face(mesh_, faces_[region], state_.density, state_.seeds[region]);
-    return face && insert(*face);
+std::optional<std::uint32_t> VariationalLoop::face_to_split(std::uint32_t region, int rounds) const {
+    const auto& faces = faces_[region];
+    if (rounds == 0) return partition::worst_face(mesh_, faces, state_.density, state_.seeds[region]);
+    const auto smooth = partition::smoothed_density(passage_, faces, state_.labels, state_.density, rounds);
+    return partition::worst_face(mesh_, faces, smooth, state_.seeds[region]);
 }
 
 }  // namespace quadseg::flow

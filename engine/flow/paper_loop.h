@@ -56,13 +56,14 @@ class VariationalLoop {
     partition::MergeCandidate merge_candidate(std::uint32_t a, std::uint32_t b) const;
     /// Joins two adjacent regions and fits the union; the last region takes the free label max(a, b).
     void merge(std::uint32_t a, std::uint32_t b);
-    /// Invalid regions first, else the one of largest error density; −1: no region can be split.
-    std::int32_t region_to_split() const;
+    /// Regions in the order in which they are to be split: invalid ones first, then by falling error density.
+    std::vector<std::uint32_t> regions_to_split() const;
     /// New region with the plane of `face` as its proxy; it has no faces until the next Lloyd run. False when the
     /// face's region has no other face.
     bool insert(std::uint32_t face);
-    /// insert() at the worst face of a region.
-    bool split(std::uint32_t region);
+    /// Face where the region is worst: the paper's rule, or of densities smoothed `rounds` times. None: no face but the
+    /// seed.
+    std::optional<std::uint32_t> face_to_split(std::uint32_t region, int rounds = 0) const;
 
     std::size_t component_count() const noexcept { return component_count_; }
     const partition::Passage& passage() const noexcept { return passage_; }

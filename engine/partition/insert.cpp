@@ -99,23 +99,38 @@ std::optional<std::uint32_t> worst_face(const mesh::WorkMesh& mesh, std::span<co
     return worst;
 }
 
-std::int32_t farthest_region(std::span<const InsertionCandidate> regions) {
-    std::int32_t farthest = -1;
-    const auto density = [](const InsertionCandidate& r) { return r.area > 0 ? r.energy / r.area : 0; };
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        const InsertionCandidate& r = regions[i];
-        if (r.faces < 2) continue;
-        if (farthest >= 0) {
-            const InsertionCandidate& best = regions[static_cast<std::size_t>(farthest)];
-            if (r.valid != best.valid) {
-                if (r.valid) continue;
-            } else if (!(density(r) > density(best))) {
-                continue;
+std::vector<double> smoothed_density(const Passage& passage, std::span<const std::uint32_t> faces, const Labels& labels,
+                                     const std::vector<double>& density, int rounds) {
+    const std::vector<double>& areas = passage.mesh->areas;
+    std::vector<double> smooth = density, next(faces.size());
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            const std::size_t f = faces[i];
+            double weight = areas[f], sum = areas[f] * smooth[f];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = passage.across(f, k);
+                if (g == mesh::no_face || labels[static_cast<std::size_t>(g)] != labels[f]) continue;
+                weight += areas[static_cast<std::size_t>(g)];
+                sum += areas[static_cast<std::size_t>(g)] * smooth[static_cast<std::size_t>(g)];
             }
+            next[i] = weight > 0 ? sum / weight : 0;
         }
-        farthest = static_cast<std::int32_t>(i);
+        for (std::size_t i = 0; i < faces.size(); ++i) smooth[faces[i]] = next[i];
     }
-    return farthest;
+    return smooth;
+}
+
+std::vector<std::uint32_t> farthest_regions(std::span<const InsertionCandidate> regions) {
+    std::vector<std::uint32_t> order;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        if (regions[r].faces > 1) order.push_back(static_cast<std::uint32_t>(r));
+    }
+    const auto density = [&](std::uint32_t r) { return regions[r].area > 0 ? regions[r].energy / regions[r].area : 0; };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        if (regions[a].valid != regions[b].valid) return regions[b].valid;
+        return density(a) != density(b) ? density(a) > density(b) : a < b;
+    });
+    return order;
 }
 
 }  // namespace quadseg::partition

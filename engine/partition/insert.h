@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/work_mesh.h"
+#include "partition/leaves.h"
 #include "partition/regions.h"
 
 #include <cstddef>
@@ -38,14 +39,19 @@ std::uint32_t best_face(const mesh::WorkMesh& mesh, std::span<const std::uint32_
 std::optional<std::uint32_t> worst_face(const mesh::WorkMesh& mesh, std::span<const std::uint32_t> faces,
                                         const std::vector<double>& density, std::uint32_t except);
 
+/// Densities of the faces of one region, averaged `rounds` times with those of their neighbours by area: the maximum is
+/// then the middle of a patch that fits badly and not a single odd face. Other faces keep theirs.
+std::vector<double> smoothed_density(const Passage& passage, std::span<const std::uint32_t> faces, const Labels& labels,
+                                     const std::vector<double>& density, int rounds);
+
 /// What the farthest-point rule asks of a region.
 struct InsertionCandidate {
     double energy = 0, area = 0;
     bool valid = true;
     std::size_t faces = 0;
 };
-/// Region to insert into: of those with more than one face an invalid one first, then the largest E/area; ties by
-/// index. −1: none can be split.
-std::int32_t farthest_region(std::span<const InsertionCandidate> regions);
+/// Order in which regions are split: of those with more than one face the invalid ones first, then by falling E/area;
+/// ties by index.
+std::vector<std::uint32_t> farthest_regions(std::span<const InsertionCandidate> regions);
 
 }  // namespace quadseg::partition
