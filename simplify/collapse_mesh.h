@@ -1,0 +1,102 @@
+// A triangle mesh under edge collapses: the corners of a vertex form a list, so that a collapse splices two lists and
+// touches nothing but the two stars. Collapses whose stars share no face may run at once.
+#pragma once
+
+#include "math/vec3.h"
+#include "simplify/error_quadric.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace quadseg::simplify {
+
+using Face = std::array<std::uint32_t, 3>;
+inline constexpr std::uint32_t none = 0xffffffffU;
+/// Vertices of more faces take no part in a collapse: it bounds the work of one, whatever the input.
+inline constexpr std::size_t max_valence = 96;
+
+enum VertexFlag : std::uint8_t {
+    vertex_border = 1,     ///< moves along its border only
+    vertex_locked = 2,     ///< non-manifold: stays where it is
+    vertex_irregular = 4,  ///< the successors of its corners do not name every neighbour exactly once
+    vertex_dead = 8
+};
+
+/// Corner i = corner i % 3 of face i / 3.
+inline std::uint32_t corner_face(std::uint32_t corner) {
+    return corner / 3;
+}
+
+/// Quadrics lose digits to offset and scale: inside, the box has its centre at 0 and the largest extent 1.
+struct Frame {
+    Vec3 centre;
+    double scale = 1;
+    Vec3 to_unit(const Vec3& x) const noexcept { return (x - centre) * scale; }
+    Vec3 to_input(const Vec3& u) const noexcept { return u / scale + centre; }
+};
+
+/// What the cost of an edge needs of its ends, together: two cache lines.
+struct alignas(64) Vertex {
+    ErrorQuadric quadric;
+    Vec3 position;  ///< in the frame
+    std::uint8_t flags = 0;
+};
+
+struct CollapseMesh {
+    Frame frame;
+    std::vector<Vertex> vertices;
+    std::vector<Face> faces;  ///< dead: {none, face that took its place, –}
+    std::vector<std::uint32_t> first_corner, next_corner;
+    std::vector<std::uint32_t> valence;  ///< live faces of a vertex
+    std::vector<std::uint32_t> source;   ///< input vertex whose position this is exactly, or none
+    std::size_t face_count = 0;          ///< alive
+
+    bool alive(std::uint32_t face) const noexcept { return faces[face][0] != none; }
+    bool dead_vertex(std::uint32_t v) const noexcept { return (vertices[v].flags & vertex_dead) != 0; }
+    Vec3 area_vector(const Face& f) const noexcept {
+        const Vec3& origin = vertices[f[0]].position;
+        return cross(vertices[f[1]].position - origin, vertices[f[2]].position - origin);
+    }
+};
+
+/// Builds lists, flags and quadrics: planes of the faces weighted by area; borders and creases sharper than
+/// `feature_degrees` held by planes through them, perpendicular to their faces. Faces with a repeated vertex are dead.
+/// False: stopped.
+bool build_collapse_mesh(std::span<const Vec3> positions, std::span<const Face> faces, double feature_degrees,
+                         const std::function<bool()>& stopped, CollapseMesh& mesh);
+
+struct Placement {
+    Vec3 position;
+    double quadric_error = 0;  ///< Q(position)
+    double cost = 0;           ///< with a small term for the length of the edge: what collapses are ordered by
+    double area = 0;
+    std::uint32_t source = none;
+};
+/// Where the vertex that replaces v and w goes.
+Placement place_collapsed(const CollapseMesh& mesh, std::uint32_t v, std::uint32_t w);
+
+/// visit(corner) for the live corners of v; dead ones leave the list. Only v's own list is written.
+template <class Visit>
+void visit_and_clean_corners(CollapseMesh& mesh, std::uint32_t v, const Visit& visit) {
+    std::uint32_t* link = &mesh.first_corner[v];
+    while (*link != none) {
+        const std::uint32_t corner = *link;
+        if (mesh.alive(corner_face(corner))) {
+            visit(corner);
+            link = &mesh.next_corner[corner];
+        } else {
+            *link = mesh.next_corner[corner];
+        }
+    }
+}
+
+/// Collapses edge (v, w) into v unless that changes the topology (link condition, Dey et al. 1999), turns a face over
+/// or, with `keep_shape`, makes a sliver. Returns the number of faces removed: 0: refused and nothing changed.
+std::size_t try_collapse(CollapseMesh& mesh, std::uint32_t v, std::uint32_t w, const Placement& placement,
+                         bool keep_shape);
+
+}  // namespace quadseg::simplify
