@@ -84,22 +84,29 @@ QuadricFit fit_taubin(const Moments& m) noexcept {
     Vector<9> y{}, rhs{};
     std::copy(b.begin() + 1, b.end(), rhs.begin());  // N c of the surface sought, were ∇f = n everywhere
     if (!(dot(rhs, rhs) > 0)) rhs.fill(1);
-    double lambda = 0;
-    constexpr int most_iterations = 12;
+    constexpr int most_iterations = 20;
+    constexpr double settled = 1e-20;  // squared change of the vector
+    bool found = false;
     for (int k = 0; k < most_iterations; ++k) {
-        y = rhs;
-        cholesky.solve(y);
-        const Vector<9> ny = pencil.times_n(y);
-        const double gradient_square = dot(y, ny);
+        Vector<9> next = rhs;
+        cholesky.solve(next);
+        const Vector<9> n_next = pencil.times_n(next);
+        const double gradient_square = dot(next, n_next);
         if (!(gradient_square > 0) || !std::isfinite(gradient_square)) break;
         const double r = 1 / std::sqrt(gradient_square);
-        for (double& v : y) v *= r;
-        for (std::size_t i = 0; i < 9; ++i) rhs[i] = ny[i] * r;
-        const double next = std::max(0.0, quadratic_form(pencil.s, y));
-        const bool converged = k > 0 && !(std::abs(next - lambda) > 1e-9 * lambda);
-        lambda = next;
-        if (converged) break;
+        double change = 0, length = 0;
+        for (std::size_t i = 0; i < 9; ++i) {
+            const double v = next[i] * r;
+            change += (v - y[i]) * (v - y[i]);
+            length += v * v;
+            y[i] = v;
+            rhs[i] = n_next[i] * r;
+        }
+        found = true;
+        if (!(change > settled * length)) break;
     }
+    if (!found) return {plane({0, 0, 1}, 0), 0, true};
+    const double lambda = std::max(0.0, quadratic_form(pencil.s, y));
     std::copy(y.begin(), y.end(), fit.c.begin() + 1);
     fit.c[0] = -dot(y, pencil.mean);
     if (!finite(fit.c)) return {plane({0, 0, 1}, 0), 0, true};
