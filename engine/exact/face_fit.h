@@ -10,8 +10,9 @@
 
 namespace quadseg::exact {
 
-/// No tessellator lets a facet turn further: the coarsest cylinders have 8 facets (45°).
-inline constexpr double largest_facet_turn = 50 * std::numbers::pi / 180;
+/// No tessellator lets a facet turn further: the coarsest cylinders have 8 facets (45°), their diagonals turn a little
+/// more.
+inline constexpr double largest_facet_turn = 75 * std::numbers::pi / 180;
 
 class FaceFitter {
   public:

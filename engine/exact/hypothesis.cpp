@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <queue>
 
 namespace quadseg::exact {
 
@@ -17,6 +18,18 @@ constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceTyp
                            SurfaceType::torus};
 constexpr double most_gap = 0.3;
 constexpr double hopeless = 1e300;
+
+/// A triangle at least three times as long as high.
+bool is_long(const Scene& scene, std::uint32_t f) {
+    const double height = static_cast<double>(scene.heights[f]);
+    return 2 * scene.mesh.areas[f] > 3 * height * height;
+}
+
+/// Half of the vertices on the surface to the last digit: no accident (those miss by 1e-7), whatever trim curves do to
+/// the border.
+bool at_precision(const Scene& scene, const Candidate& candidate) {
+    return candidate.median <= std::max(10 * scene.tolerances.precision, 1e-9 * scene.tolerances.diagonal);
+}
 
 struct PatchPoints {
     std::vector<std::uint32_t> vertices;
@@ -115,17 +128,26 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
 
 }  // namespace
 
-Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets,
+Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, PatchOrder order,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
+    struct Step {
+        double key;
+        std::size_t sequence;
+        std::uint32_t face;
+        bool operator<(const Step& b) const { return key != b.key ? key > b.key : sequence > b.sequence; }
+    };
     marks.prepare(scene.mesh.face_count(), scene.mesh.vertex_count());
     marks.clear();
     Patch patch;
-    std::vector<std::uint32_t> queue{seed};
-    marks.mark_face(seed);
+    std::priority_queue<Step> queue;
+    std::size_t sequence = 0;
+    queue.push({0, sequence++, seed});
     std::vector<std::int32_t> taken;
-    for (std::size_t i = 0; i < queue.size() && taken.size() < facets; ++i) {
-        const std::int32_t id = scene.facets.of_face[queue[i]];
-        if (std::find(taken.begin(), taken.end(), id) != taken.end()) continue;
+    while (!queue.empty() && taken.size() < facets) {
+        const std::uint32_t next = queue.top().face;
+        queue.pop();
+        const std::int32_t id = scene.facets.of_face[next];
+        if (!marks.mark_face(next) || std::find(taken.begin(), taken.end(), id) != taken.end()) continue;
         taken.push_back(id);
         const auto facet = static_cast<std::size_t>(id);
         const std::size_t first = patch.faces.size();
@@ -138,7 +160,15 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets,
             for (int k = 0; k < 3; ++k) {
                 if (scene.is_crease(f, k)) continue;
                 const auto g = static_cast<std::uint32_t>(scene.mesh.neighbors[f][static_cast<std::size_t>(k)]);
-                if (!scene.in_sure_plane(g) && usable(g) && marks.mark_face(g)) queue.push_back(g);
+                if (scene.in_sure_plane(g) || scene.facets.of_face[g] == id || marks.has_face(g) || !usable(g))
+                    continue;
+                double key = 0;
+                if (order == PatchOrder::longest_edge) {
+                    key = -norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
+                } else if (order == PatchOrder::flattest) {
+                    key = dihedral(scene.mesh, f, g);
+                }
+                queue.push({key, sequence++, g});
             }
         }
     }
@@ -172,19 +202,26 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
 std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bool loose,
                                       const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
     const double tolerance = loose ? scene.tolerances.loose_fit : scene.tolerances.fit;
-    const Patch patch = collect_patch(scene, seed, patch_sizes.front(), usable, marks);
-    std::size_t tried = 0;
-    for (const std::size_t size : patch_sizes) {
-        const std::size_t facets = std::min(size, patch.facet_end.size());
-        if (facets < 2 || facets == tried) continue;
-        tried = facets;
-        const std::vector<std::uint32_t> faces = patch.up_to(facets);
-        const std::optional<Surface> surface = explain(scene, faces, tolerance, marks);
-        if (!surface) continue;
-        Candidate candidate = grow(scene, *surface, faces, marks);
-        candidate.loose = loose;
-        if (candidate.faces.size() * 2 < faces.size() || candidate.gap > most_gap) continue;
-        return candidate;
+    // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
+    const bool strips =
+        scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[seed])) > 1 || is_long(scene, seed);
+    for (const PatchOrder order : {PatchOrder::breadth, PatchOrder::longest_edge, PatchOrder::flattest}) {
+        if (order != PatchOrder::breadth && !strips) break;
+        const Patch patch = collect_patch(scene, seed, patch_sizes.front(), order, usable, marks);
+        std::size_t tried = 0;
+        for (const std::size_t size : patch_sizes) {
+            const std::size_t facets = std::min(size, patch.facet_end.size());
+            if (facets < 2 || facets == tried) continue;
+            tried = facets;
+            const std::vector<std::uint32_t> faces = patch.up_to(facets);
+            const std::optional<Surface> surface = explain(scene, faces, tolerance, marks);
+            if (!surface) continue;
+            Candidate candidate = grow(scene, *surface, faces, marks);
+            candidate.loose = loose;
+            if (candidate.faces.size() * 2 < faces.size()) continue;
+            if (candidate.gap > most_gap && !at_precision(scene, candidate)) continue;
+            return candidate;
+        }
     }
     return std::nullopt;
 }

@@ -10,7 +10,7 @@
 
 namespace quadseg::exact {
 
-/// Faces around a seed in breadth-first order of facets, creases not crossed.
+/// Faces around a seed in a growing order of facets, creases not crossed.
 struct Patch {
     std::vector<std::uint32_t> faces;
     std::vector<std::size_t> facet_end;  ///< after the k-th facet: number of faces
@@ -19,8 +19,12 @@ struct Patch {
     }
 };
 
+/// In which order a patch takes its neighbours. On CAD tessellations breadth runs out of a strip of long facets at
+/// once, over its short sides; the long edges lead along the surface that the strips belong to.
+enum class PatchOrder { breadth, longest_edge, flattest };
+
 /// `usable(f)`: faces that may be part of it (not yet explained).
-Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets,
+Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, PatchOrder order,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
 /// The surface that explains a patch, if one does within the tolerance.
