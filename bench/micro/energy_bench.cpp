@@ -1,0 +1,49 @@
+// Energies: of one triangle, from moments, and over a region's packs.
+#include "bench/micro/shapes.h"
+#include "quadric/energy.h"
+#include "quadric/face_packs.h"
+#include "quadric/fit.h"
+
+#include <benchmark/benchmark.h>
+
+namespace quadseg {
+namespace {
+
+void energy_of_a_triangle(benchmark::State& state) {
+    const bench::Patch patch = bench::ellipsoid_patch(2000);
+    quadric::Proxy proxy = fit_region(patch.soup(), {}).proxy;
+    if (state.range(0) == 0) proxy = quadric::plane_proxy(patch.corners[0], patch.normals[0]);
+    std::size_t t = 0;
+    for (auto _ : state) {
+        t = t + 1 < patch.areas.size() ? t + 1 : 0;
+        benchmark::DoNotOptimize(triangle_energy(proxy, patch.corners[3 * t], patch.corners[3 * t + 1],
+                                                 patch.corners[3 * t + 2], patch.normals[t], patch.areas[t]));
+    }
+    state.SetLabel(proxy.planar() ? "plane" : "quadric");
+}
+
+void energy_from_moments(benchmark::State& state) {
+    const quadric::FacePacks faces(bench::ellipsoid_patch(200).soup());
+    const quadric::Coefficients c = fit_taubin(faces.moments()).c;
+    for (auto _ : state) benchmark::DoNotOptimize(moment_energy(c, faces.moments()));
+}
+
+void energy_over_packs(benchmark::State& state) {
+    const bench::Patch patch = bench::ellipsoid_patch(static_cast<std::size_t>(state.range(0)));
+    quadric::FacePacks faces(patch.soup());
+    quadric::Candidate candidate = faces.prepare(fit_taubin(faces.moments()).c);
+    for (auto _ : state) {
+        faces.evaluate(candidate);
+        benchmark::DoNotOptimize(candidate);
+    }
+    state.counters["s/face"] =
+        benchmark::Counter(static_cast<double>(patch.areas.size()),
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(energy_of_a_triangle)->Arg(0)->Arg(1);
+BENCHMARK(energy_from_moments);
+BENCHMARK(energy_over_packs)->Arg(128)->Arg(100000);
+
+}  // namespace
+}  // namespace quadseg
