@@ -168,25 +168,33 @@ std::size_t count_non_manifold_vertices(const WorkMesh& mesh, const runtime::Run
         }
         return size;
     };
-    // A corner's fan is counted once, from the first corner of each vertex; a vertex is simple if that fan has all its
-    // corners.
-    std::vector<std::uint32_t> valence(mesh.vertex_count(), 0), first(mesh.vertex_count());
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        if (f % block == 0) control.check();
+    // The first corner of each vertex: vertices are numbered by first use, so it is where a new number appears.
+    std::vector<std::uint32_t> first(mesh.vertex_count());
+    for (std::size_t f = 0, seen = 0; f < mesh.face_count(); ++f) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t v = mesh.faces[f][k];
-            if (valence[v]++ == 0) first[v] = static_cast<std::uint32_t>(3 * f + k);
+            if (mesh.faces[f][k] == seen) first[seen++] = static_cast<std::uint32_t>(3 * f + k);
         }
     }
-    return runtime::reduce_blocks(
+    control.check();
+    std::vector<std::uint32_t> fan(mesh.vertex_count());
+    const std::size_t corners = runtime::reduce_blocks(
         mesh.vertex_count(), block, std::size_t{0},
         [&](std::size_t begin, std::size_t end) {
             control.check();
-            std::size_t count = 0;
-            for (std::size_t v = begin; v < end; ++v) count += fan_size(first[v] / 3, first[v] % 3) != valence[v];
-            return count;
+            std::size_t sum = 0;
+            for (std::size_t v = begin; v < end; ++v) {
+                fan[v] = static_cast<std::uint32_t>(fan_size(first[v] / 3, first[v] % 3));
+                sum += fan[v];
+            }
+            return sum;
         },
         [](std::size_t a, std::size_t b) { return a + b; });
+    if (corners == 3 * mesh.face_count()) return 0;  // the first fan of every vertex has all its corners
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        if (f % block == 0) control.check();
+        for (const std::uint32_t v : mesh.faces[f]) --fan[v];  // wraps round where there are more corners
+    }
+    return fan.size() - static_cast<std::size_t>(std::count(fan.begin(), fan.end(), 0U));
 }
 
 }  // namespace quadseg::mesh::build

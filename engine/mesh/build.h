@@ -39,7 +39,8 @@ struct EdgeCounts {
 /// Fills neighbors by matching half-edges in buckets of their larger vertex.
 EdgeCounts match_edges(WorkMesh& mesh, const runtime::RunControl& control);
 
-/// Vertices whose faces form more than one fan.
+/// Vertices whose faces form more than one fan. To be called while vertices are still numbered by first use (before
+/// orient()).
 std::size_t count_non_manifold_vertices(const WorkMesh& mesh, const runtime::RunControl& control);
 
 /// Fills normals and areas from positions in input coordinates.

@@ -55,13 +55,27 @@ void find_components(WorkMesh& mesh, const runtime::RunControl& control) {
             }
         }
     });
-    mesh.components.resize(mesh.face_count());
-    mesh.component_count = 0;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {  // a root comes before its members
-        if (f % block == 0) control.check();
+    // A root is the first face of its component: numbering the roots in order numbers the components by first face.
+    const std::size_t faces = mesh.face_count();
+    mesh.components.resize(faces);
+    const auto is_root = [&](std::size_t f) { return sets.find(static_cast<std::uint32_t>(f)) == f; };
+    std::vector<std::size_t> roots_before((faces + block - 1) / block, 0);
+    runtime::parallel_blocks(faces, block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) roots_before[begin / block] += is_root(f) ? 1 : 0;
+    });
+    mesh.component_count = runtime::exclusive_scan(roots_before);
+    control.check();
+    runtime::parallel_blocks(faces, block, [&](std::size_t begin, std::size_t end) {
+        std::size_t next = roots_before[begin / block];
+        for (std::size_t f = begin; f < end; ++f) {
+            if (is_root(f)) mesh.components[f] = static_cast<std::int32_t>(next++);
+        }
+    });
+    control.check();
+    runtime::parallel_for(faces, block, [&](std::size_t f) {
         const std::uint32_t root = sets.find(static_cast<std::uint32_t>(f));
-        mesh.components[f] = root == f ? static_cast<std::int32_t>(mesh.component_count++) : mesh.components[root];
-    }
+        if (root != f) mesh.components[f] = mesh.components[root];
+    });
     mesh.report.components = mesh.component_count;
 }
 

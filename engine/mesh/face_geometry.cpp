@@ -16,8 +16,11 @@ void measure_faces(WorkMesh& mesh, const runtime::RunControl& control) {
     }
     // A face whose height is within the rounding of its coordinates has no normal. Slivers of aspect 1e5 do.
     const double coordinate_rounding = 4 * std::numeric_limits<double>::epsilon() * largest * scale;
-    mesh.normals.resize(mesh.face_count());
-    mesh.areas.resize(mesh.face_count());
+    const double coordinate_rounding2 = coordinate_rounding * coordinate_rounding;
+    constexpr double flat2 = 1e-28;  // (height / longest edge)²
+    // Fresh memory costs as much as the arithmetic: let two threads touch it.
+    runtime::parallel_invoke([&] { mesh.normals.resize(mesh.face_count()); },
+                             [&] { mesh.areas.resize(mesh.face_count()); });
     struct Sum {
         double area = 0;
         std::size_t degenerate = 0;
@@ -33,10 +36,11 @@ void measure_faces(WorkMesh& mesh, const runtime::RunControl& control) {
                 const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
                 const Vec3 u = (b - a) * scale, v = (c - a) * scale, w = (c - b) * scale;
                 const Vec3 n = cross(u, v);
-                const double length = norm(n);
+                const double length2 = squared_norm(n);
                 const double longest2 = std::max({squared_norm(u), squared_norm(v), squared_norm(w)});
-                if (length > 1e-14 * longest2 && length > coordinate_rounding * std::sqrt(longest2)) {
-                    mesh.normals[f] = n / length;
+                if (length2 > longest2 * std::max(flat2 * longest2, coordinate_rounding2)) {
+                    const double length = std::sqrt(length2);
+                    mesh.normals[f] = n * (1 / length);
                     mesh.areas[f] = 0.5 * length;
                     s.area += mesh.areas[f];
                 } else {
