@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 namespace quadseg::flow {
@@ -144,30 +143,42 @@ class PaperFlow {
         best_.note(loop_.state());
     }
 
-    /// Splits the first region of the paper's order in which the new region grows; where none does, the first region
-    /// that can be split at all. False: there is none.
+    /// Splits the first region of the paper's order in which the new region grows. Where none does, a wanted number of
+    /// regions is reached by the insertion that saves most; without one, the loop has converged. False: no insertion.
     bool insert_region() {
-        const std::vector<std::uint32_t> order = loop_.regions_to_split();
         const LoopState before = loop_.state();
-        const auto untried = [&](std::uint32_t r) { return !fruitless_.contains(before.stamps[r]); };
-        const auto first = std::find_if(order.begin(), order.end(), untried);
-        for (auto r = first; r != order.end(); ++r) {
-            if (!untried(*r)) continue;
+        const std::vector<std::uint32_t> order = loop_.regions_to_split();
+        for (const std::uint32_t r : order) {
+            if (fruitless_.contains(before.stamps[r])) continue;
+            Attempt best;
             for (const int rounds : smoothing_rounds) {
-                if (!insert_and_relax(*r, rounds)) break;
+                if (!insert_and_relax(r, rounds)) break;
                 const double gain = before.energy - loop_.state().energy;
-                if (gain >= least_gain * before.fits[*r].total) {
+                if (is_worthwhile(before, r, gain)) {
                     most_expensive_merge_ = worthwhile_share * gain;
                     return true;
                 }
+                if (gain > best.gain) best = {gain, rounds};
                 loop_.restore(before);
             }
-            fruitless_.insert(before.stamps[*r]);
+            fruitless_[before.stamps[r]] = best;
         }
-        for (const std::uint32_t r : order) {
-            if (insert_and_relax(r, 0)) return true;
-        }
-        return false;
+        if (wanted_ == 0 && paper_.merging) return false;
+        const auto gain = [&](std::uint32_t r) { return fruitless_[before.stamps[r]].gain; };
+        const auto most = std::max_element(order.begin(), order.end(),
+                                           [&](std::uint32_t a, std::uint32_t b) { return gain(a) < gain(b); });
+        if (most == order.end()) return false;
+        most_expensive_merge_ = 0;
+        return insert_and_relax(*most, fruitless_[before.stamps[*most]].rounds);
+    }
+    /// A region that saves less than ε is one that merging calls redundant.
+    bool is_worthwhile(const LoopState& before, std::uint32_t split, double gain) const {
+        if (gain < least_gain * before.fits[split].total) return false;
+        if (wanted_ > 0 || !paper_.merging || gain >= paper_.merge_tolerance) return true;
+        const auto invalid = [](const LoopState& state) {
+            return std::count_if(state.fits.begin(), state.fits.end(), [](const auto& fit) { return !fit.valid; });
+        };
+        return invalid(loop_.state()) < invalid(before);
     }
     bool insert_and_relax(std::uint32_t region, int rounds) {
         const auto face = loop_.face_to_split(region, rounds);
@@ -252,7 +263,11 @@ class PaperFlow {
     const runtime::RunControl& control_;
     VariationalLoop loop_;
     BestEnergies best_;
-    std::set<std::uint64_t> fruitless_;  ///< stamps of regions in which no insertion grew
+    struct Attempt {
+        double gain = -std::numeric_limits<double>::max();
+        int rounds = 0;
+    };
+    std::map<std::uint64_t, Attempt> fruitless_;  ///< best insertion into regions (by stamp) in which none grew
     /// While regions are still being inserted, a merge must cost less than what an insertion saves.
     double most_expensive_merge_ = std::numeric_limits<double>::max();
 };
