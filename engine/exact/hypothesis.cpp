@@ -25,6 +25,29 @@ bool is_long(const Scene& scene, std::uint32_t f) {
     return 2 * scene.mesh.areas[f] > 3 * height * height;
 }
 
+/// Direction of the edges over which a row of facets is followed: the longest outer edge of the seed's facet, or the
+/// outer edge that is most across it.
+Vec3 rung_of_row(const Scene& scene, std::uint32_t seed, PatchOrder order) {
+    const std::int32_t id = scene.facets.of_face[seed];
+    const auto facet = static_cast<std::size_t>(id);
+    std::vector<Vec3> edges;
+    for (std::size_t j = scene.facets.begin[facet]; j < scene.facets.begin[facet + 1]; ++j) {
+        const std::uint32_t f = scene.facets.face[j];
+        for (int k = 0; k < 3; ++k) {
+            const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
+            if (g >= 0 && scene.facets.of_face[static_cast<std::size_t>(g)] == id) continue;
+            edges.push_back(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
+        }
+    }
+    const auto longer = [](const Vec3& a, const Vec3& b) { return squared_norm(a) < squared_norm(b); };
+    const Vec3 longest = normalized(*std::max_element(edges.begin(), edges.end(), longer));
+    if (order == PatchOrder::along_row) return longest;
+    const auto more_across = [&](const Vec3& a, const Vec3& b) {
+        return std::abs(dot(longest, normalized(a))) > std::abs(dot(longest, normalized(b)));
+    };
+    return normalized(*std::max_element(edges.begin(), edges.end(), more_across));
+}
+
 /// Half of the vertices on the surface to the last digit: no accident (those miss by 1e-7), whatever trim curves do to
 /// the border.
 bool at_precision(const Scene& scene, const Candidate& candidate) {
@@ -142,6 +165,7 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
     std::priority_queue<Step> queue;
     std::size_t sequence = 0;
     queue.push({0, sequence++, seed});
+    const Vec3 rung = order == PatchOrder::breadth ? Vec3{} : rung_of_row(scene, seed, order);
     std::vector<std::int32_t> taken;
     while (!queue.empty() && taken.size() < facets) {
         const std::uint32_t next = queue.top().face;
@@ -163,10 +187,9 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
                 if (scene.in_sure_plane(g) || scene.facets.of_face[g] == id || marks.has_face(g) || !usable(g))
                     continue;
                 double key = 0;
-                if (order == PatchOrder::longest_edge) {
-                    key = -norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
-                } else if (order == PatchOrder::flattest) {
-                    key = dihedral(scene.mesh, f, g);
+                if (order != PatchOrder::breadth) {
+                    key = 1 -
+                          std::abs(dot(rung, normalized(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k))));
                 }
                 queue.push({key, sequence++, g});
             }
@@ -205,7 +228,7 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bo
     // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
     const bool strips =
         scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[seed])) > 1 || is_long(scene, seed);
-    for (const PatchOrder order : {PatchOrder::breadth, PatchOrder::longest_edge, PatchOrder::flattest}) {
+    for (const PatchOrder order : {PatchOrder::breadth, PatchOrder::along_row, PatchOrder::across_row}) {
         if (order != PatchOrder::breadth && !strips) break;
         const Patch patch = collect_patch(scene, seed, patch_sizes.front(), order, usable, marks);
         std::size_t tried = 0;

@@ -19,9 +19,10 @@ struct Patch {
     }
 };
 
-/// In which order a patch takes its neighbours. On CAD tessellations breadth runs out of a strip of long facets at
-/// once, over its short sides; the long edges lead along the surface that the strips belong to.
-enum class PatchOrder { breadth, longest_edge, flattest };
+/// In which order a patch takes its neighbours. On CAD tessellations breadth runs out of a row of long facets at once,
+/// over its short sides; a row is followed over edges parallel to one edge of the seed: its longest, or the one most
+/// across that.
+enum class PatchOrder { breadth, along_row, across_row };
 
 /// `usable(f)`: faces that may be part of it (not yet explained).
 Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, PatchOrder order,

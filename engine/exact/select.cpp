@@ -37,9 +37,9 @@ class Selector {
         : scene_(scene), candidates_(candidates), alive_(candidates.size(), 1) {}
 
     Selection run() {
-        drop_duplicates();
         find_noise();
         demote();
+        drop_duplicates();
         find_largest_step();
         demand_small_steps();
         score_claims();
@@ -71,6 +71,7 @@ class Selector {
         std::vector<double> shared(candidates_.size(), 0);
         for (const std::uint32_t c : order) {
             scene_.control.check();
+            if (!is_alive(c)) continue;
             const Candidate& candidate = candidates_[c];
             Indices touched;
             for (const std::uint32_t f : candidate.faces) {
@@ -82,7 +83,7 @@ class Selector {
             }
             for (const std::uint32_t other : touched) {
                 const Candidate& larger = candidates_[other];
-                const double limit = std::max(3 * candidate.median, scene_.tolerances.fit);
+                const double limit = std::max(3 * candidate.median, trusted_);
                 if (shared[other] >= duplicate_share * candidate.area && larger.median <= limit) alive_[c] = 0;
                 shared[other] = 0;
             }
@@ -105,6 +106,7 @@ class Selector {
     void demote() {
         const double s0 = std::max(result_.noise, 1e-11 * scene_.tolerances.diagonal);
         const double limit = std::max(30 * s0, scene_.tolerances.fit);
+        trusted_ = std::max({3 * s0, 1e-9 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision});
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& k = candidates_[c];
             const bool accidental =
@@ -181,6 +183,7 @@ class Selector {
     const Scene& scene_;
     const std::vector<Candidate>& candidates_;
     std::vector<std::uint8_t> alive_;
+    double trusted_ = 0;  ///< median distance up to which a fit is no accident
     std::vector<std::vector<float>> claims_;
     Selection result_;
 };
