@@ -99,7 +99,7 @@ class Builder {
                 for (std::size_t i = 0; i < n; ++i) {
                     const bool free = surface(i) == surface((i + n - 1) % n);
                     const double s = static_cast<double>(i) + (free ? jitter() : 0);
-                    current[i] = add_vertex(point(s, (row + jitter()) / rows));
+                    current[i] = add_vertex(point(s, (row + jitter() / 2) / rows));
                 }
             }
             for (std::size_t i = 0; i < n; ++i) {

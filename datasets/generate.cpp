@@ -15,8 +15,9 @@ struct Entry {
     Shape shape;
 };
 constexpr std::array shapes{
-    Entry{"plate", make_plate},
-    Entry{"quadrics", make_quadrics},
+    Entry{"plate", make_plate},     Entry{"shaft", make_shaft},
+    Entry{"flange", make_flange},   Entry{"quadrics", make_quadrics},
+    Entry{"fillets", make_fillets}, Entry{"rounded_octahedron", make_rounded_octahedron},
 };
 
 struct Spacing {

@@ -86,7 +86,7 @@ void Turning::line_to(double r, double z, const Loop* end) {
         builder_.add_surface(surface), 1, end);
 }
 
-void Turning::arc_to(double r, double z, double centre_r, double centre_z, std::int32_t surface) {
+std::int32_t Turning::arc_to(double r, double z, double centre_r, double centre_z, std::int32_t surface) {
     const double radius = std::hypot(r - centre_r, z - centre_z);
     const double from = std::atan2(z_ - centre_z, r_ - centre_r);
     const double turn = std::remainder(std::atan2(z - centre_z, r - centre_r) - from, 2 * std::numbers::pi);
@@ -100,6 +100,7 @@ void Turning::arc_to(double r, double z, double centre_r, double centre_z, std::
     curve_to(
         r, z, [=](double t) { return centre_r + radius * std::cos(from + turn * t); },
         [=](double t) { return centre_z + radius * std::sin(from + turn * t); }, radius * std::abs(turn), surface, 2);
+    return surface;
 }
 
 }  // namespace quadseg::datasets

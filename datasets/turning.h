@@ -52,8 +52,8 @@ class Turning {
     /// A straight piece: plane, cylinder or cone. With `end`, the chain ends on that loop.
     void line_to(double r, double z, const Loop* end = nullptr);
     /// An arc around (centre_r, centre_z), the shorter way: torus, or sphere where the centre is on the axis.
-    /// `surface`: continues that one.
-    void arc_to(double r, double z, double centre_r, double centre_z, std::int32_t surface = -1);
+    /// `surface`: continues that one. Returns its surface.
+    std::int32_t arc_to(double r, double z, double centre_r, double centre_z, std::int32_t surface = -1);
     /// Any other piece: radius(t), height(t), t in 0 … 1.
     template <class Radius, class Height>
     void curve_to(double r, double z, const Radius& radius, const Height& height, double length, std::int32_t surface,

@@ -23,8 +23,8 @@ Rgb region_color(std::int32_t region) {
     // Multiples of the golden ratio never come close to each other.
     const double golden = 0.6180339887498949;
     const double hue = std::fmod(0.58 + region * golden, 1.0);
-    constexpr std::array saturation{0.45, 0.65, 0.3, 0.55};
-    constexpr std::array value{0.95, 0.85, 0.9, 0.72};
+    constexpr std::array saturation{0.42, 0.56, 0.3, 0.48};
+    constexpr std::array value{0.96, 0.9, 0.93, 0.84};
     const auto k = static_cast<std::size_t>(region) % 4;
     return from_hsv(hue, saturation[k], value[k]);
 }

@@ -209,7 +209,7 @@ class Canvas {
         const Vec3 key = normalized(camera_.towards * 0.55 - camera_.right * 0.45 + up * 0.7);
         const Vec3 fill_light = normalized(camera_.towards * 0.5 + camera_.right * 0.8 - up * 0.1);
         const double diffuse =
-            0.36 + 0.56 * std::max(0.0, dot(normal, key)) + 0.2 * std::max(0.0, dot(normal, fill_light));
+            0.46 + 0.5 * std::max(0.0, dot(normal, key)) + 0.2 * std::max(0.0, dot(normal, fill_light));
         const Vec3 half = normalized(key + camera_.towards);
         const double highlight = 34 * std::pow(std::max(0.0, dot(normal, half)), 40);
         std::array<float, 3> light{};
