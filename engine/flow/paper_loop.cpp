@@ -22,7 +22,7 @@ constexpr int patience = 4;
 VariationalLoop::VariationalLoop(const FlowInput& input)
     : mesh_(input.mesh),
       options_(input.options),
-      control_(input.control),
+      control_(&input.control),
       passage_{&input.mesh, input.features, {}},
       policy_(method_policy(input.options)),
       flood_(passage_) {
@@ -105,7 +105,7 @@ int VariationalLoop::lloyd(int iterations, FloodScope scope, bool start_counts) 
     double previous = start_counts ? state_.energy : -1;
     int done = 0, fruitless = 0;
     while (done < iterations) {
-        control_.check();
+        control_->check();
         if (scope == FloodScope::all) {
             std::vector<std::uint32_t> all(state_.regions());
             std::iota(all.begin(), all.end(), 0U);
@@ -121,7 +121,7 @@ int VariationalLoop::lloyd(int iterations, FloodScope scope, bool start_counts) 
         }
         add_up();
         energies.push_back(state_.energy);
-        control_.report(Phase::fine, progress, state_.regions(), state_.energy);
+        control_->report(Phase::fine, progress, state_.regions(), state_.energy);
         if (!have_best || state_.energy < kept_.energy) {
             kept_ = state_;
             have_best = true;
@@ -170,7 +170,7 @@ void VariationalLoop::regroup(const std::vector<std::uint32_t>& regions) {
     std::sort(faces.begin(), faces.end());
     std::vector<std::int32_t> before(faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i) before[i] = state_.labels[faces[i]];
-    flood_.run(seeded, faces, policy_.metric, state_.labels, state_.density, control_);
+    flood_.run(seeded, faces, policy_.metric, state_.labels, state_.density, *control_);
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const auto old_region = static_cast<std::size_t>(before[i]);
         const auto new_region = static_cast<std::size_t>(state_.labels[faces[i]]);
@@ -192,7 +192,7 @@ void VariationalLoop::fit_regions() {
         return faces_[a].size() != faces_[b].size() ? faces_[a].size() > faces_[b].size() : a < b;
     });
     runtime::parallel_for(changed.size(), 1, [&](std::size_t i) {
-        control_.check();
+        control_->check();
         const std::uint32_t r = changed[i];
         partition::GatheredRegion gathered;
         partition::gather(mesh_, faces_[r].data(), faces_[r].size(), gathered);
@@ -253,8 +253,8 @@ partition::MergeableRegion VariationalLoop::mergeable(std::size_t region) const 
 std::vector<partition::MergeCandidate> VariationalLoop::merge_candidates() {
     std::vector<partition::MergeableRegion> regions;
     for (std::size_t r = 0; r < state_.regions(); ++r) regions.push_back(mergeable(r));
-    const auto pairs = partition::region_pairs(passage_, state_.labels, control_);
-    return candidates_.evaluate(mesh_, pairs, regions, policy_.fit, control_);
+    const auto pairs = partition::region_pairs(passage_, state_.labels, *control_);
+    return candidates_.evaluate(mesh_, pairs, regions, policy_.fit, *control_);
 }
 
 partition::MergeCandidate VariationalLoop::merge_candidate(std::uint32_t a, std::uint32_t b) const {
@@ -295,6 +295,18 @@ void VariationalLoop::merge(std::uint32_t a, std::uint32_t b) {
 
 bool VariationalLoop::all_valid() const noexcept {
     return std::all_of(state_.fits.begin(), state_.fits.end(), [](const auto& fit) { return fit.valid; });
+}
+
+Energy VariationalLoop::energy_terms() const {
+    Energy energy;
+    for (std::size_t f = 0; f < state_.labels.size(); ++f) {
+        const quadric::Proxy& proxy = state_.fits[static_cast<std::size_t>(state_.labels[f])].proxy;
+        const quadric::TriangleEnergy e = partition::face_energy(mesh_, f, proxy, policy_.metric.normalised);
+        energy.distance += e.distance;
+        energy.normal += e.normal;
+    }
+    energy.total = energy.distance + options_.weight * energy.normal;
+    return energy;
 }
 
 std::vector<std::uint32_t> VariationalLoop::regions_to_split() const {

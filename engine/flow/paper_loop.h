@@ -41,6 +41,9 @@ class VariationalLoop {
     /// The partition into components (feature groups), fitted.
     void start_from_components();
 
+    /// Watched from now on instead of FlowInput::control.
+    void set_control(const runtime::RunControl& control) noexcept { control_ = &control; }
+
     const LoopState& state() const noexcept { return state_; }
     /// The last complete state: what is left after Stopped.
     const LoopState& kept() const noexcept { return kept_; }
@@ -68,6 +71,8 @@ class VariationalLoop {
     std::size_t component_count() const noexcept { return component_count_; }
     const partition::Passage& passage() const noexcept { return passage_; }
     bool all_valid() const noexcept;
+    /// Both terms of the energy, total as Options::weight has it whatever the method.
+    Energy energy_terms() const;
     double area(std::size_t region) const { return areas_[region]; }
     std::size_t face_count(std::size_t region) const { return faces_[region].size(); }
 
@@ -85,7 +90,7 @@ class VariationalLoop {
 
     const mesh::WorkMesh& mesh_;
     const Options& options_;
-    const runtime::RunControl& control_;
+    const runtime::RunControl* control_;
     partition::Passage passage_;
     MethodPolicy policy_;
     partition::Flood flood_;

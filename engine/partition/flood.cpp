@@ -127,7 +127,7 @@ void Flood::run(std::span<const SeededRegion> regions, std::span<const std::uint
     close();
 }
 
-std::size_t open_components(const Passage& passage, Labels& groups) {
+std::size_t open_components(const Passage& passage, Labels& groups, const Labels* within) {
     groups.assign(passage.mesh->face_count(), -1);
     std::int32_t count = 0;
     std::vector<std::uint32_t> stack;
@@ -141,6 +141,7 @@ std::size_t open_components(const Passage& passage, Labels& groups) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::int32_t u = passage.across(f, k);
                 if (u == mesh::no_face || groups[static_cast<std::size_t>(u)] >= 0) continue;
+                if (within != nullptr && (*within)[static_cast<std::size_t>(u)] != (*within)[f]) continue;
                 groups[static_cast<std::size_t>(u)] = count;
                 stack.push_back(static_cast<std::uint32_t>(u));
             }
