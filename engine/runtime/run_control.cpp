@@ -49,17 +49,17 @@ void RunControl::report(Phase phase, double fraction, std::size_t regions, doubl
     if (!state_ || !state_->progress) return;
     const auto now = Clock::now().time_since_epoch().count();
     const int phase_number = static_cast<int>(phase);
-    // A new phase and the end are worth a report of their own: there are few of them.
+    // A later phase and the end are worth a report of their own: there are few of them.
     const auto is_due = [&] {
         return now >= next_report_.load(std::memory_order_relaxed) ||
-               phase_number != phase_.load(std::memory_order_relaxed) ||
+               phase_number > phase_.load(std::memory_order_relaxed) ||
                (fraction >= 1 && fraction_.load(std::memory_order_relaxed) < 1);
     };
     if (!is_due()) return;
     const CallbackGuard guard(state_->in_callback);
     if (!guard.entered() || !is_due()) return;
     next_report_.store(now + report_interval, std::memory_order_relaxed);
-    phase_.store(phase_number, std::memory_order_relaxed);
+    phase_.store(std::max(phase_number, phase_.load(std::memory_order_relaxed)), std::memory_order_relaxed);
     const double reached = fraction_.load(std::memory_order_relaxed);
     const double shown =
         fraction > reached ? std::min(fraction, 1.0) : reached;  // NaN-safe: NaN shows what was reached
