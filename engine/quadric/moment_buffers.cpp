@@ -1,6 +1,7 @@
 #include "quadric/moment_buffers.h"
 
 #include "quadric/lane_moments.h"
+#include "quadric/moment_accumulator.h"
 #include "quadric/triangle_moments.h"
 
 #include <algorithm>
@@ -33,28 +34,15 @@ struct LoadedFaces {
     }
 };
 
-double row_product(const Pack* row, const Pack* weight, std::size_t count) noexcept {
-    Pack sum{};
-    for (std::size_t p = 0; p < count; ++p) sum += weight[p] * row[p];
-    return horizontal_sum(sum);
-}
-
 }  // namespace
 
 Moments soup_moments(const TriangleSoup& soup, const Vec3& origin) noexcept {
-    LaneMoments sum;
-    LaneAreas areas;
-    for (std::size_t t = 0; t < soup.size(); t += lanes) {
-        const LoadedFaces f(soup, t, origin);
-        Pack m[35];
-        triangle_moments(&f.corners[0], f.area, m);
-        sum.add(m, f.normal);
-        areas.add(f.area, f.normal);
+    MomentAccumulator sum;
+    for (std::size_t t = 0; t < soup.size(); ++t) {
+        sum.add(soup.corners[3 * t] - origin, soup.corners[3 * t + 1] - origin, soup.corners[3 * t + 2] - origin,
+                soup.normals[t], soup.areas[t]);
     }
-    Moments result;
-    sum.sum(result);
-    areas.sum(result);
-    return result;
+    return sum.moments();
 }
 
 Vec3 soup_centroid(const TriangleSoup& soup) noexcept {
@@ -77,11 +65,11 @@ MomentBuffers::MomentBuffers(std::vector<std::uint32_t> block_begin) : begin_(st
     if (begin_.empty()) begin_.push_back(0);
     blocks_.resize(begin_.size() - 1);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        blocks_[b].first_pack = pack_count_;
-        blocks_[b].row_packs = (block_size(b) + lanes - 1) / lanes;
-        pack_count_ += rows * blocks_[b].row_packs;
+        blocks_[b].first_group = group_count_;
+        blocks_[b].groups = (block_size(b) + lanes - 1) / lanes;
+        group_count_ += blocks_[b].groups;
     }
-    packs_ = std::make_unique_for_overwrite<Pack[]>(pack_count_);
+    groups_ = std::make_unique_for_overwrite<Group[]>(group_count_);
 }
 
 void MomentBuffers::fill(std::size_t b, const TriangleSoup& faces) {
@@ -89,13 +77,12 @@ void MomentBuffers::fill(std::size_t b, const TriangleSoup& faces) {
     block.origin = soup_centroid(faces);
     LaneMoments sum;
     LaneAreas areas;
-    for (std::size_t p = 0; p < block.row_packs; ++p) {
+    for (std::size_t p = 0; p < block.groups; ++p) {
         const LoadedFaces f(faces, p * lanes, block.origin);
-        Pack m[35];
-        triangle_moments(&f.corners[0], f.area, m);
-        for (std::size_t r = 0; r < 35; ++r) row(block, r)[p] = m[r];
-        for (std::size_t axis = 0; axis < 3; ++axis) row(block, 35 + axis)[p] = f.normal[axis];
-        sum.add(m, f.normal);
+        Group& group = groups_[block.first_group + p];
+        triangle_moments(&f.corners[0], f.area, &group.moments[0]);
+        for (std::size_t axis = 0; axis < 3; ++axis) group.normal[axis] = f.normal[axis];
+        sum.add(&group.moments[0], f.normal);
         areas.add(f.area, f.normal);
     }
     sum.sum(block.sum);
@@ -103,44 +90,30 @@ void MomentBuffers::fill(std::size_t b, const TriangleSoup& faces) {
 }
 
 std::size_t MomentBuffers::bytes() const noexcept {
-    return pack_count_ * sizeof(Pack) + blocks_.size() * sizeof(Block) + begin_.size() * sizeof(std::uint32_t);
+    return group_count_ * sizeof(Group) + blocks_.size() * sizeof(Block) + begin_.size() * sizeof(std::uint32_t);
 }
 
 Moments MomentBuffers::weighted_moments(std::size_t b, std::size_t first, std::span<const double> w2,
                                         std::span<const double> w1) const noexcept {
-    constexpr std::size_t chunk = 16;  // packs whose weights are laid out at a time
     const Block& block = blocks_[b];
     const std::size_t end = first + w2.size();
-    Moments result;
+    LaneMoments sum;
     LaneAreas areas;
-    for (std::size_t begin = first / lanes; begin * lanes < end; begin += chunk) {
-        const std::size_t count = std::min(chunk, (end + lanes - 1) / lanes - begin);
-        Pack weight2[chunk], weighted_normal[3][chunk];
-        for (std::size_t p = 0; p < count; ++p) {
-            Pack weight1{}, present{};
-            weight2[p] = Pack{};
-            for (std::size_t l = 0; l < lanes; ++l) {
-                const std::size_t slot = (begin + p) * lanes + l;
-                if (slot < first || slot >= end || w2[slot - first] == 0) continue;
-                weight2[p][l] = w2[slot - first];
-                weight1[l] = w1[slot - first];
-                present[l] = 1;
-            }
-            Pack n[3];
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                n[axis] = row(block, 35 + axis)[begin + p];
-                weighted_normal[axis][p] = weight1 * n[axis];
-            }
-            areas.add(present * row(block, 0)[begin + p], n);
+    for (std::size_t p = first / lanes; p * lanes < end; ++p) {
+        Pack weight2{}, weight1{}, present{};
+        for (std::size_t l = 0; l < lanes; ++l) {
+            const std::size_t slot = p * lanes + l;
+            if (slot < first || slot >= end || w2[slot - first] == 0) continue;
+            weight2[l] = w2[slot - first];
+            weight1[l] = w1[slot - first];
+            present[l] = 1;
         }
-        for (std::size_t r = 0; r < 35; ++r) result.area[r] += row_product(row(block, r) + begin, weight2, count);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                result.normal[normal_index(axis, k)] +=
-                    row_product(row(block, k) + begin, weighted_normal[axis], count);
-            }
-        }
+        const Group& group = groups_[block.first_group + p];
+        sum.add(&group.moments[0], &group.normal[0], weight2, weight1);
+        areas.add(present * group.moments[0], &group.normal[0]);
     }
+    Moments result;
+    sum.sum(result);
     areas.sum(result);
     return result;
 }

@@ -1,5 +1,5 @@
-// The paper's precomputation: moments of every triangle in structure-of-arrays buffers, from which the weighted sums of
-// the second step are streams of multiply-adds.
+// The paper's precomputation: moments of every triangle in structure-of-arrays buffers (by eights), from which the
+// weighted sums of the second step are streams of multiply-adds.
 //
 // One frame for a whole mesh would make them numerically worthless for regions below a hundredth of its size
 // (MATH.md §3). So faces come in small groups (blocks, e.g. superfacets), each with its own origin; a region's sums are
@@ -23,7 +23,7 @@ Moments soup_moments(const TriangleSoup& soup, const Vec3& origin) noexcept;
 /// Area-weighted centroid; the first corner where there is no area.
 Vec3 soup_centroid(const TriangleSoup& soup) noexcept;
 
-/// 304 bytes a face, rounded up to whole packs a block.
+/// 304 bytes a face, rounded up to eight faces a block.
 class MomentBuffers {
   public:
     /// Block b holds slots block_begin[b] … block_begin[b+1]−1: ascending, the first 0.
@@ -50,21 +50,22 @@ class MomentBuffers {
     void accumulate(Moments& region, const Vec3& region_origin, std::size_t b) const noexcept;
 
   private:
-    static constexpr std::size_t rows = 38;  // 35 moments, 3 components of the unit normal
-
+    /// Eight faces, one a lane. Arrays of lanes in groups of eight rather than whole columns: one stream to write and
+    /// to read instead of 38.
+    struct Group {
+        Pack moments[35];
+        Pack normal[3];
+    };
     struct Block {
         Vec3 origin;
         Moments sum;
-        std::size_t first_pack = 0, row_packs = 0;
+        std::size_t first_group = 0, groups = 0;
     };
-    Pack* row(const Block& block, std::size_t r) const noexcept {
-        return packs_.get() + block.first_pack + r * block.row_packs;
-    }
 
     std::vector<std::uint32_t> begin_;
     std::vector<Block> blocks_;
-    std::unique_ptr<Pack[]> packs_;
-    std::size_t pack_count_ = 0;
+    std::unique_ptr<Group[]> groups_;
+    std::size_t group_count_ = 0;
 };
 
 }  // namespace quadseg::quadric

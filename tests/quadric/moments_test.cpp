@@ -1,5 +1,6 @@
 #include "quadric/moments.h"
 
+#include "quadric/moment_accumulator.h"
 #include "quadric/moment_buffers.h"
 #include "tests/quadric/shapes.h"
 
@@ -141,6 +142,20 @@ TEST(SoupMoments, EqualThoseOfSingleTriangles) {
         expect_near(soup_moments(soup.view(), {0.3, -0.2, 0.1}), soup.moments({0.3, -0.2, 0.1}), 1e-14);
     }
     expect_near(soup_moments({}, {}), Moments{}, 0);
+}
+
+TEST(MomentAccumulator, MayBeAskedInBetween) {
+    const test::Soup soup = test::saddle_patch(4);
+    MomentAccumulator sum;
+    Moments direct;
+    for (std::size_t t = 0; t < soup.size(); ++t) {
+        const Vec3 &a = soup.corners[3 * t], &b = soup.corners[3 * t + 1], &c = soup.corners[3 * t + 2];
+        sum.add(a, b, c, soup.normals[t], soup.areas[t]);
+        accumulate(direct, a, b, c, soup.normals[t], soup.areas[t]);
+        if (t % 3 == 0) expect_near(sum.moments(), direct, 1e-14);
+    }
+    expect_near(sum.moments(), direct, 1e-14);
+    expect_near(MomentAccumulator().moments(), Moments{}, 0);
 }
 
 TEST(SoupMoments, IgnoreCornersOfFacesWithoutArea) {
