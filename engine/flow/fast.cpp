@@ -87,6 +87,11 @@ class FastFlow {
   private:
     /// The coarsest partition there is, so that a flow stopped early has a result.
     void start_from_parts() {
+        if (passage_.barriers == nullptr && passage_.active.empty()) {
+            labels_ = mesh_.components;
+            count_ = mesh_.component_count;
+            return;
+        }
         labels_.assign(mesh_.face_count(), 0);
         for (std::size_t f = 0; f < labels_.size(); ++f) {
             if (!passage_.is_active(f)) labels_[f] = -1;
@@ -115,9 +120,26 @@ class FastFlow {
             options.largest = 1;
             leaves = partition::grow_leaves(passage_, options, control_);
         }
+        while (fast_.tolerance > 0 && options.largest > 1 && exceeds_tolerance(leaves)) {
+            options.angle /= 2;
+            options.largest /= 4;
+            leaves = partition::grow_leaves(passage_, options, control_);
+        }
         leaves_ = std::move(leaves.labels);
         labels_ = leaves_;
         count_ = leaves.count;
+    }
+
+    /// More than a hundredth of the area lies in leaves that miss the tolerance already.
+    bool exceeds_tolerance(const partition::Leaves& leaves) const {
+        const double tolerance = fast_.tolerance * mesh_.frame.diagonal;
+        double outside = 0;
+        for (const partition::MergeRegion& leaf :
+             partition::measure_regions(mesh_, leaves.labels, leaves.count, scorer_, control_)) {
+            const double area = leaf.moments.total_area;
+            if (leaf.score.distance > tolerance * tolerance * area) outside += area;
+        }
+        return outside > 0.01 * mesh_.total_area;
     }
 
     partition::MergeRules rules() const {
