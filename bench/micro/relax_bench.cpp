@@ -1,0 +1,57 @@
+// Boundary relaxation from merged labels, with surfaces from moments and with complete fits.
+#include "datasets/generate.h"
+#include "flow/fast.h"
+#include "mesh/work_mesh.h"
+#include "partition/pair_merge.h"
+#include "partition/relax.h"
+
+#include <benchmark/benchmark.h>
+
+namespace quadseg {
+namespace {
+
+const runtime::RunControl free_run(nullptr);
+
+void relaxation(benchmark::State& state) {
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(
+        datasets::generate("plate", static_cast<std::size_t>(state.range(0))).mesh.view(), free_run);
+    const partition::Passage passage{&mesh};
+    const Options options;
+    flow::FastOptions fast = flow::fast_options(options);
+    fast.moment_steps = 0;
+    fast.relax_steps = 0;
+    const flow::FlowResult merged = flow::run_fast({mesh, nullptr, options, free_run}, fast);
+    const auto regions = partition::measure_regions(
+        mesh, merged.labels, merged.regions, [](const quadric::Moments&) { return partition::RegionScore{}; },
+        free_run);
+    partition::RelaxOptions relax;
+    relax.moment_steps = static_cast<int>(state.range(1));
+    relax.steps = static_cast<int>(state.range(2));
+    double energy = 0;
+    for (auto _ : state) {
+        partition::Labels labels = merged.labels;
+        energy = partition::relax(passage, labels, regions, relax, free_run).energy;
+    }
+    state.counters["energy"] = energy;
+    state.counters["s/face"] =
+        benchmark::Counter(static_cast<double>(mesh.face_count()),
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void complete_flow(benchmark::State& state) {
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(
+        datasets::generate("plate", static_cast<std::size_t>(state.range(0))).mesh.view(), free_run);
+    const Options options;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(flow::run_fast({mesh, nullptr, options, free_run}, flow::fast_options(options)));
+    }
+    state.counters["s/face"] =
+        benchmark::Counter(static_cast<double>(mesh.face_count()),
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(relaxation)->Args({100000, 6, 0})->Args({100000, 0, 6})->Args({100000, 2, 3})->Unit(benchmark::kMillisecond);
+BENCHMARK(complete_flow)->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace quadseg
