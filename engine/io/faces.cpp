@@ -1,5 +1,6 @@
 #include "io/faces.h"
 
+#include "io/polled_resize.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -16,8 +17,8 @@ void append_faces(Mesh& mesh, std::vector<FaceBlock>& blocks, const runtime::Run
     }
     mesh.file_faces = runtime::exclusive_scan(first_face);
     const std::size_t triangles = runtime::exclusive_scan(first_triangle);
-    mesh.triangles.resize(3 * triangles);
-    mesh.polygons.resize(all_triangles ? 0 : triangles);
+    polled_resize(mesh.triangles, 3 * triangles, control);
+    polled_resize(mesh.polygons, all_triangles ? 0 : triangles, control);
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t b) {
         FaceBlock block = std::move(blocks[b]);
         std::uint32_t* out = mesh.triangles.data() + 3 * first_triangle[b];

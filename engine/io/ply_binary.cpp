@@ -3,6 +3,7 @@
 #include "io/bytes.h"
 #include "io/faces.h"
 #include "io/mesh_faults.h"
+#include "io/polled_resize.h"
 #include "runtime/parallel.h"
 
 #include <atomic>
@@ -158,7 +159,7 @@ class BodyReader {
 
     void read_vertices(const char* p, Mesh& mesh) const {
         const PlyElement& element = header_.vertices();
-        mesh.positions.resize(3 * element.count);
+        polled_resize(mesh.positions, 3 * element.count, control_);
         Walk starts;
         const std::size_t stride = element.has_list() ? 0 : element.scalar_bytes();
         if (stride == 0) behind(element, p, &starts);
@@ -226,8 +227,9 @@ class BodyReader {
         const std::size_t stride = element.scalar_bytes() + size_bytes + 3 * ply_size(list.type);
         if (!fits(p, element.count, stride)) return false;
         const char* first = p + offset(element, header_.corner_list);
+        if (element.count > 0 && load_integer(*list.list_size_type, first) != 3) return false;
         std::atomic<bool> uniform{true};
-        mesh.triangles.resize(3 * element.count);
+        polled_resize(mesh.triangles, 3 * element.count, control_);
         std::vector<std::optional<Fault>> faults((element.count + block_elements - 1) / block_elements);
         runtime::parallel_blocks(element.count, block_elements, [&](std::size_t begin, std::size_t end) {
             control_.check();

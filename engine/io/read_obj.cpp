@@ -3,6 +3,7 @@
 #include "io/faces.h"
 #include "io/formats.h"
 #include "io/mesh_faults.h"
+#include "io/polled_resize.h"
 #include "io/text_blocks.h"
 #include "runtime/parallel.h"
 
@@ -220,7 +221,7 @@ Mesh read_obj(const FileContents& file, const runtime::RunControl& control) {
         file.fail(ErrorCode::file_format, "has more vertices or faces than 32-bit indices can name");
     }
     Mesh mesh;
-    mesh.positions.resize(3 * vertices);
+    polled_resize(mesh.positions, 3 * vertices, control);
     std::vector<FaceBlock> faces(blocks.size());
     std::vector<std::optional<Fault>> faults(blocks.size());
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t b) {

@@ -3,6 +3,7 @@
 #include "io/faces.h"
 #include "io/formats.h"
 #include "io/mesh_faults.h"
+#include "io/polled_resize.h"
 #include "io/text_blocks.h"
 #include "runtime/parallel.h"
 
@@ -136,7 +137,7 @@ Mesh read_off(const FileContents& file, const runtime::RunControl& control) {
                                " face lines; it is truncated, or not one vertex or face a line"});
     }
     Mesh mesh;
-    mesh.positions.resize(3 * header.vertices);
+    polled_resize(mesh.positions, 3 * header.vertices, control);
     std::vector<FaceBlock> faces(blocks.size());
     std::vector<std::optional<Fault>> faults(blocks.size());
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t b) {

@@ -4,6 +4,7 @@
 #include "io/mesh_faults.h"
 #include "io/ply_binary.h"
 #include "io/ply_header.h"
+#include "io/polled_resize.h"
 #include "io/text_blocks.h"
 #include "runtime/parallel.h"
 
@@ -128,7 +129,7 @@ Mesh read_text(const FileContents& file, const PlyHeader& header, const runtime:
     }
     const std::size_t vertices = header.vertices().count, faces = header.faces().count;
     Mesh mesh;
-    mesh.positions.resize(3 * vertices);
+    polled_resize(mesh.positions, 3 * vertices, control);
     std::vector<FaceBlock> face_blocks(blocks.size());
     std::vector<std::optional<Fault>> faults(blocks.size());
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t b) {

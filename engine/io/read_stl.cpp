@@ -2,6 +2,7 @@
 #include "io/bytes.h"
 #include "io/formats.h"
 #include "io/mesh_faults.h"
+#include "io/polled_resize.h"
 #include "io/stl.h"
 #include "io/weld.h"
 
@@ -86,7 +87,7 @@ Mesh read_stl_binary(const FileContents& file, const runtime::RunControl& contro
     mesh.triangles = std::move(welded.vertex_of);
     mesh.file_faces = facets;
     mesh.welded_vertices = 3 * facets - welded.first_corner.size();
-    mesh.positions.resize(3 * welded.first_corner.size());
+    polled_resize(mesh.positions, 3 * welded.first_corner.size(), control);
     runtime::parallel_blocks(welded.first_corner.size(), grain, [&](std::size_t begin, std::size_t end) {
         control.check();
         for (std::size_t v = begin; v < end; ++v) {

@@ -1,6 +1,7 @@
 // STL as text: any number of solids, each a list of facets of three vertices. Words may be of either case.
 #include "io/formats.h"
 #include "io/mesh_faults.h"
+#include "io/polled_resize.h"
 #include "io/text_blocks.h"
 #include "io/weld.h"
 #include "runtime/parallel.h"
@@ -151,7 +152,8 @@ std::vector<double> collect(const FileContents& file, const std::vector<TextBloc
     if (numbers / 3 > largest_count) {
         file.fail(ErrorCode::file_format, "has more corners than 32-bit indices can name");
     }
-    std::vector<double> corners(numbers);
+    std::vector<double> corners;
+    polled_resize(corners, numbers, control);
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t b) {
         control.check();
         std::copy(blocks[b].corners.begin(), blocks[b].corners.end(),
@@ -177,11 +179,14 @@ Mesh read_stl_ascii(const FileContents& file, const runtime::RunControl& control
     mesh.triangles = std::move(welded.vertex_of);
     mesh.file_faces = mesh.triangles.size() / 3;
     mesh.welded_vertices = mesh.triangles.size() - welded.first_corner.size();
-    mesh.positions.reserve(3 * welded.first_corner.size());
-    for (const std::uint32_t corner : welded.first_corner) {
-        const double* x = &corners[3 * std::size_t{corner}];
-        mesh.positions.insert(mesh.positions.end(), x, x + 3);
-    }
+    constexpr std::size_t grain = 65536;
+    polled_resize(mesh.positions, 3 * welded.first_corner.size(), control);
+    runtime::parallel_blocks(welded.first_corner.size(), grain, [&](std::size_t begin, std::size_t end) {
+        control.check();
+        for (std::size_t v = begin; v < end; ++v) {
+            std::copy_n(&corners[3 * std::size_t{welded.first_corner[v]}], 3, &mesh.positions[3 * v]);
+        }
+    });
     return mesh;
 }
 

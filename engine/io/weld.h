@@ -1,6 +1,7 @@
 // Equal positions become one vertex, numbered by first occurrence: the same at any number of threads.
 #pragma once
 
+#include "io/polled_resize.h"
 #include "runtime/parallel.h"
 #include "runtime/run_control.h"
 
@@ -53,7 +54,8 @@ class Welder {
     }
 
     Weld weld() {
-        std::vector<std::uint32_t> first_of(count_);
+        std::vector<std::uint32_t> first_of;
+        polled_resize(first_of, count_, control_);
         deal_out(first_of);
         runtime::parallel_for(parts(), 1, [&](std::size_t p) {
             control_.check();
@@ -152,8 +154,8 @@ class Welder {
             first_vertex[begin / grain] = vertices;
         });
         Weld result;
-        result.first_corner.resize(runtime::exclusive_scan(first_vertex));
-        result.vertex_of.resize(count_);
+        polled_resize(result.first_corner, runtime::exclusive_scan(first_vertex), control_);
+        polled_resize(result.vertex_of, count_, control_);
         runtime::parallel_blocks(count_, grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
             std::size_t vertex = first_vertex[begin / grain];
