@@ -15,6 +15,8 @@ constexpr double rounding_share = 1e-14;
 // An extremum of f that close to 0 (relative to the terms that cancel in it) is a degenerate quadric, not a tiny one.
 constexpr double degenerate_share = 1e-13;
 constexpr int most_iterations = 100;
+// ν, the squared ratio of distances to the centre, above which f(p) is too rounded.
+constexpr double far_away = 1e4;
 
 }  // namespace
 
@@ -93,10 +95,11 @@ Vec3 QuadricProjector::gradient(const Vec3& p) const noexcept {
 
 Vec3 QuadricProjector::foot_point(const Vec3& p) const noexcept {
     if (empty_) return p;
-    double f = c0_, w[3];
+    double f = c0_, w[3], u[3];
     for (int i = 0; i < 3; ++i) {
-        const double u = dot(axes_[i], p), du = d_[i] * u;
-        f += u * (0.5 * du + b_[i]);
+        u[i] = dot(axes_[i], p);
+        const double du = d_[i] * u[i];
+        f += u[i] * (0.5 * du + b_[i]);
         w[i] = du + b_[i];
     }
     if (!std::isfinite(f)) return p;
@@ -106,10 +109,10 @@ Vec3 QuadricProjector::foot_point(const Vec3& p) const noexcept {
     if (f < 0) {
         for (double& wi : w) wi = -wi;
         f = -f;
-        const Vec3 e = displacement(side_[1], f, w);
+        const Vec3 e = displacement(side_[1], f, w, u);
         return p - (e.x * axes_[0] + e.y * axes_[1] + e.z * axes_[2]);
     }
-    const Vec3 e = displacement(side_[0], f, w);
+    const Vec3 e = displacement(side_[0], f, w, u);
     return p - (e.x * axes_[0] + e.y * axes_[1] + e.z * axes_[2]);
 }
 
@@ -128,7 +131,7 @@ Vec3 QuadricProjector::at_pole(const Side& side, double value, const double* w) 
     return {e[0], e[1], e[2]};
 }
 
-Vec3 QuadricProjector::displacement(const Side& side, double value, const double* w) const noexcept {
+Vec3 QuadricProjector::displacement(const Side& side, double value, const double* w, const double* u) const noexcept {
     if (!(value > 0)) return {};
     const double T = side.scale;
     const double w2[3] = {w[0] * w[0], w[1] * w[1], w[2] * w[2]};
@@ -203,6 +206,22 @@ Vec3 QuadricProjector::displacement(const Side& side, double value, const double
         }
         if (std::abs(next - nu) <= 1e-16 * nu) break;
         nu = next;
+    }
+    if (!side.pole && nu > far_away) {
+        // So far from the surface f(p) has lost what tells the root; f at the foot point itself has not.
+        const double sign = &side == &side_[0] ? 1 : -1;
+        for (int correction = 0; correction < 4; ++correction) {
+            double f = c0_, slope = 0;
+            for (int i = 0; i < 3; ++i) {
+                const double y = u[i] - t * w[i] / q[i];
+                f += y * (0.5 * d_[i] * y + b_[i]);
+                slope += w2[i] / (q[i] * q[i] * q[i]);
+            }
+            const double next = t + sign * f / slope;
+            if (!(next > 0) || !std::isfinite(next)) break;
+            t = next;
+            for (int i = 0; i < 3; ++i) q[i] = 1 + t * side.d[i];
+        }
     }
     return {t * w[0] / q[0], t * w[1] / q[1], t * w[2] / q[2]};
 }

@@ -34,7 +34,7 @@ class QuadricProjector {
         double r[3]{};        ///< d_i / d_k
         double inverse_d[3]{};  ///< 1/d_i, 0 for d_i = 0
     };
-    Vec3 displacement(const Side& side, double value, const double* w) const noexcept;
+    Vec3 displacement(const Side& side, double value, const double* w, const double* u) const noexcept;
     static Vec3 at_pole(const Side& side, double value, const double* w) noexcept;
 
     Vec3 axes_[3];
