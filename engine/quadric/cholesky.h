@@ -48,8 +48,10 @@ class Cholesky {
     };
     State factor_stabilised(const Matrix<N>& a, const Vector<N>& b) noexcept {
         if (factor(a, b, singular_pivot)) return {true, false};
-        for (double ridge = singular_pivot * static_cast<double>(N); ridge < 1; ridge *= 1e3) {
+        double ridge = singular_pivot * static_cast<double>(N);
+        for (int attempt = 0; attempt < 4; ++attempt) {
             if (factor(a, b, singular_pivot, ridge)) return {true, true};
+            ridge *= 1e3;
         }
         return {false, true};
     }

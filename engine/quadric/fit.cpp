@@ -70,12 +70,14 @@ QuadricFit fit_taubin(const Moments& m) noexcept {
         for (std::size_t j = i; j < 9; ++j) shifted_s[i][j] += shift * pencil.n[i][j];
     }
     Cholesky<9> cholesky;
-    // Half-way pivots are what makes inverse iteration converge: only those at rounding level count as singular.
+    // Tiny pivots are what makes inverse iteration converge: only those at rounding level count as singular.
     if (!cholesky.factor(shifted_s, {}, 1e-16)) {
         fit.regularised = true;
         bool usable = false;
-        for (double ridge = 1e-15; !usable && ridge < 1; ridge *= 10) {
+        double ridge = 1e-15;
+        for (int attempt = 0; !usable && attempt < 15; ++attempt) {
             usable = cholesky.factor(shifted_s, {}, 1e-16, ridge);
+            ridge *= 10;
         }
         if (!usable) return {plane({0, 0, 1}, 0), 0, true};
     }

@@ -17,9 +17,9 @@ namespace quadseg::quadric {
 
 /// Index of the monomial x^i y^j z^k among the 35 of moment_exponents.
 constexpr std::size_t moment_index(int i, int j, int k) noexcept {
-    constexpr std::array<int, 5> first = {0, 1, 4, 10, 20};
-    const int rest = j + k;
-    return static_cast<std::size_t>(first[static_cast<std::size_t>(i + rest)] + rest * (rest + 1) / 2 + k);
+    constexpr std::array<std::size_t, 5> first = {0, 1, 4, 10, 20};
+    const std::size_t rest = static_cast<std::size_t>(j) + static_cast<std::size_t>(k);
+    return first[static_cast<std::size_t>(i) + rest] + rest * (rest + 1) / 2 + static_cast<std::size_t>(k);
 }
 
 namespace detail {
@@ -77,7 +77,7 @@ inline void triangle_moments(const T* corners, const T& area, T* m) noexcept {
     const T gz = (corners[2] + corners[5] + corners[8]) * (1.0 / 3);
     T xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
     T xxx{}, xxy{}, xxz{}, xyy{}, xyz{}, xzz{}, yyy{}, yyz{}, yzz{}, zzz{};
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const T x = corners[3 * i] - gx, y = corners[3 * i + 1] - gy, z = corners[3 * i + 2] - gz;
         const T x2 = x * x, y2 = y * y, z2 = z * z, x_y = x * y;
         xx = xx + x2;
