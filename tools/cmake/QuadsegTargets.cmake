@@ -29,7 +29,10 @@ function(quadseg_room name folder)
         set(sources ${CMAKE_CURRENT_BINARY_DIR}/${name}_empty.cpp)
     endif()
     add_library(quadseg_room_${name} OBJECT ${sources})
-    set_target_properties(quadseg_room_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
-        VISIBILITY_INLINES_HIDDEN ON)
+    set_target_properties(quadseg_room_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    # The headers carry no export marks: a shared library shows its names.
+    if(NOT BUILD_SHARED_LIBS)
+        set_target_properties(quadseg_room_${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    endif()
     target_link_libraries(quadseg_room_${name} PRIVATE quadseg_settings ${ARG_LINK})
 endfunction()
