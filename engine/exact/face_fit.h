@@ -17,7 +17,11 @@ inline constexpr double largest_facet_turn = 75 * std::numbers::pi / 180;
 class FaceFitter {
   public:
     FaceFitter(const Scene& scene, const Surface& surface)
-        : scene_(scene), evaluate_(surface), trim_(scene.tolerances.trim) {}
+        : scene_(scene),
+          evaluate_(surface),
+          trim_(scene.tolerances.trim),
+          apex_(to_vec3(surface.point)),
+          cone_(surface.type == SurfaceType::cone) {}
 
     double distance(std::size_t f) const {
         double d = 0;
@@ -47,9 +51,17 @@ class FaceFitter {
     static double angle_of_chord(double chord) { return 2 * std::asin(std::min(1.0, chord / 2)); }
 
     void normal_part(std::size_t f, FaceFit& fit) const {
-        const Vec3 a = evaluate_.normal(scene_.mesh.corner(f, 0));
-        const Vec3 b = evaluate_.normal(scene_.mesh.corner(f, 1));
-        const Vec3 c = evaluate_.normal(scene_.mesh.corner(f, 2));
+        Vec3 a = evaluate_.normal(scene_.mesh.corner(f, 0));
+        Vec3 b = evaluate_.normal(scene_.mesh.corner(f, 1));
+        Vec3 c = evaluate_.normal(scene_.mesh.corner(f, 2));
+        if (cone_) {
+            // The apex has no normal: a facet that ends there turns by what its other side turns.
+            const double near =
+                1e-3 * 2 * scene_.mesh.areas[f] / std::max(static_cast<double>(scene_.heights[f]), 1e-300);
+            if (norm(scene_.mesh.corner(f, 0) - apex_) <= near) a = normalized(b + c);
+            if (norm(scene_.mesh.corner(f, 1) - apex_) <= near) b = normalized(c + a);
+            if (norm(scene_.mesh.corner(f, 2) - apex_) <= near) c = normalized(a + b);
+        }
         fit.step = angle_of_chord(std::sqrt(std::max({squared_norm(a - b), squared_norm(b - c), squared_norm(c - a)})));
         constexpr double degree = std::numbers::pi / 180;
         // A flat face on a curved surface differs from the surface's normal by what that turns across the face.
@@ -70,6 +82,8 @@ class FaceFitter {
     const Scene& scene_;
     surface::SurfaceEvaluator evaluate_;
     double trim_;
+    Vec3 apex_;
+    bool cone_;
 };
 
 }  // namespace quadseg::exact

@@ -40,6 +40,65 @@ std::vector<std::uint32_t> order_by_height(const std::vector<float>& heights) {
     return order;
 }
 
+struct Point2 {
+    double x, y;
+};
+
+double turn(const Point2& o, const Point2& a, const Point2& b) {
+    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+double distance_to_line(const Point2& a, const Point2& b, const Point2& p) {
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    return length > 0 ? std::abs(turn(a, b, p)) / length : std::hypot(p.x - a.x, p.y - a.y);
+}
+
+/// Corners of the convex hull, counter-clockwise, those dropped that lie within `flat` of the line between their
+/// neighbours.
+std::vector<Point2> hull_corners(std::vector<Point2> points, double flat) {
+    std::sort(points.begin(), points.end(),
+              [](const Point2& a, const Point2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::vector<Point2> hull;
+    for (int half = 0; half < 2; ++half) {
+        const std::size_t base = hull.size();
+        for (const Point2& p : points) {
+            while (hull.size() >= base + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
+            hull.push_back(p);
+        }
+        hull.pop_back();
+        std::reverse(points.begin(), points.end());
+    }
+    for (bool dropped = true; dropped && hull.size() > 3;) {
+        dropped = false;
+        for (std::size_t i = 0; i < hull.size() && hull.size() > 3; ++i) {
+            const std::size_t n = hull.size();
+            if (distance_to_line(hull[(i + n - 1) % n], hull[(i + 1) % n], hull[i]) > flat) continue;
+            hull.erase(hull.begin() + static_cast<std::ptrdiff_t>(i));
+            dropped = true;
+        }
+    }
+    return hull;
+}
+
+/// Whether all points lie on two sides of their convex hull (opposite ones of a quad, any two of a triangle).
+bool on_two_sides(const std::vector<Point2>& points) {
+    double extent = 0;
+    for (const Point2& p : points) extent = std::max(extent, std::hypot(p.x - points[0].x, p.y - points[0].y));
+    const double flat = 1e-3 * extent;
+    const std::vector<Point2> hull = hull_corners(points, flat);
+    if (hull.size() > 4) return false;
+    if (hull.size() < 3) return true;
+    for (std::size_t side = 0; side < hull.size(); ++side) {
+        const std::size_t other = hull.size() == 4 ? (side + 2) % 4 : (side + 1) % 3;
+        const auto on_side = [&](const Point2& p) {
+            return distance_to_line(hull[side], hull[(side + 1) % hull.size()], p) <= flat ||
+                   distance_to_line(hull[other], hull[(other + 1) % hull.size()], p) <= flat;
+        };
+        if (std::all_of(points.begin(), points.end(), on_side)) return true;
+    }
+    return false;
+}
+
 /// Running sums of the corners of a cluster, about its first corner.
 class PlaneSums {
   public:
@@ -122,7 +181,7 @@ class FacetFinder {
             if (members_.size() > 2) sums.fit(facet.normal, facet.offset);
         }
         for (const std::uint32_t f : members_) facet.area += mesh_.areas[f];
-        facet.sure = has_interior_vertex() && !creeps_away(id, facet);
+        facet.sure = (has_interior_vertex() || !is_strip(facet)) && !creeps_away(id, facet);
         for (const std::uint32_t f : members_) {
             for (const std::uint32_t v : mesh_.faces[f]) seen_[v] = 0;
         }
@@ -146,6 +205,22 @@ class FacetFinder {
             }
         }
         return interior;
+    }
+
+    /// A facet of a ruled or swept tessellation has its vertices on two lines: two rulings, or two sides of a planar
+    /// quad.
+    bool is_strip(const Facet& facet) {
+        if (members_.size() < 3) return true;
+        const Vec3 u = any_perpendicular(facet.normal), v = cross(facet.normal, u);
+        const Vec3 origin = mesh_.corner(members_.front(), 0);
+        outline_.clear();
+        for (const std::uint32_t f : members_) {
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 p = mesh_.corner(f, k) - origin;
+                outline_.push_back({dot(p, u), dot(p, v)});
+            }
+        }
+        return on_two_sides(outline_);
     }
 
     /// A patch of a curved surface that is flat within the tolerance goes on smoothly beyond its border.
@@ -189,6 +264,7 @@ class FacetFinder {
     std::vector<float> heights_;
     Facets result_;
     std::vector<std::uint32_t> incident_, seen_, members_;
+    std::vector<Point2> outline_;
     std::size_t polls_ = 0;
 };
 

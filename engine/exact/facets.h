@@ -14,7 +14,7 @@ struct Facet {
     Vec3 normal;
     double offset = 0;  ///< normal·x = offset
     double area = 0;
-    bool sure = false;  ///< a plane of the part, not a strip of a curved surface: it has a vertex in its interior
+    bool sure = false;  ///< a plane of the part, not a strip of a curved surface
 };
 
 struct Facets {
