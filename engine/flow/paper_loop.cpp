@@ -26,7 +26,8 @@ VariationalLoop::VariationalLoop(const FlowInput& input)
       passage_{&input.mesh, input.features, {}},
       policy_(method_policy(input.options)),
       flood_(passage_) {
-    component_count_ = partition::open_components(passage_, components_);
+    components_.assign(mesh_.face_count(), 0);
+    component_count_ = partition::connected_parts(passage_, components_);
     kept_.labels = components_;
     kept_.fits.resize(component_count_);
 }

@@ -82,8 +82,8 @@ struct Segmenter::Impl {
 
     /// Splits regions at borders and features where they need it; true when the labels stayed as they were.
     bool adopt(partition::Labels labels) {
-        partition::Labels parts;
-        const std::size_t count = partition::open_components(loop->passage(), parts, &labels);
+        partition::Labels parts = labels;
+        const std::size_t count = partition::connected_parts(loop->passage(), parts);
         const auto regions = static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end()) + 1);
         const bool whole = count == regions;
         loop->start_from_labels(whole ? labels : parts);

@@ -127,28 +127,4 @@ void Flood::run(std::span<const SeededRegion> regions, std::span<const std::uint
     close();
 }
 
-std::size_t open_components(const Passage& passage, Labels& groups, const Labels* within) {
-    groups.assign(passage.mesh->face_count(), -1);
-    std::int32_t count = 0;
-    std::vector<std::uint32_t> stack;
-    for (std::size_t start = 0; start < groups.size(); ++start) {
-        if (groups[start] >= 0) continue;
-        groups[start] = count;
-        stack.push_back(static_cast<std::uint32_t>(start));
-        while (!stack.empty()) {
-            const std::size_t f = stack.back();
-            stack.pop_back();
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t u = passage.across(f, k);
-                if (u == mesh::no_face || groups[static_cast<std::size_t>(u)] >= 0) continue;
-                if (within != nullptr && (*within)[static_cast<std::size_t>(u)] != (*within)[f]) continue;
-                groups[static_cast<std::size_t>(u)] = count;
-                stack.push_back(static_cast<std::uint32_t>(u));
-            }
-        }
-        ++count;
-    }
-    return static_cast<std::size_t>(count);
-}
-
 }  // namespace quadseg::partition

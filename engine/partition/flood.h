@@ -12,10 +12,6 @@
 
 namespace quadseg::partition {
 
-/// Groups of faces that can reach each other without crossing borders or features, by first face: the floor of the
-/// number of regions. With `within`, faces of different labels do not reach each other. Returns their number.
-std::size_t open_components(const Passage& passage, Labels& groups, const Labels* within = nullptr);
-
 /// A proxy and the face from which it grows.
 struct SeededRegion {
     std::int32_t label = 0;
