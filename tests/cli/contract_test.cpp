@@ -149,8 +149,8 @@ TEST_F(Contract, OneFaceIsAMesh) {
 
 TEST_F(Contract, NothingHalfWrittenIsLeft) {
     const std::string mesh = plate(20000);
-    // Files of more than 64 KiB cannot be written, as on a full disk.
-    const Outcome outcome = run("segment " + mesh + " -o " + (folder / "out"), "ulimit -f 64; trap '' XFSZ;");
+    // Files of more than 100 KiB cannot be written, as on a full disk.
+    const Outcome outcome = run("segment " + mesh + " -o " + (folder / "out"), "ulimit -f 200; trap '' XFSZ;");
     EXPECT_EQ(outcome.code, 1) << outcome.output;
     EXPECT_NE(outcome.output.find("regions.ply"), std::string::npos) << outcome.output;
     EXPECT_FALSE(std::filesystem::exists(folder / "out/regions.ply"));

@@ -2,6 +2,7 @@
 
 #include "tools/cli/commands.h"
 #include "tools/cli/exit_code.h"
+#include "tools/cli/files.h"
 #include "tools/cli/report.h"
 #include "tools/cli/stop_signals.h"
 
@@ -58,7 +59,8 @@ Command add_info(CLI::App& app) {
         Context context;
         const StopSignals signals(context);
         const Mesh mesh = read_mesh(arguments->mesh, &context);
-        const MeshReport report = inspect(mesh.view(), arguments->features, &context);
+        const MeshReport report =
+            on_file(arguments->mesh, [&] { return inspect(mesh.view(), arguments->features, &context); });
         if (arguments->json) {
             std::cout << input_json(arguments->mesh, mesh, report).dump(1) << '\n';
         } else {

@@ -92,7 +92,7 @@ int run_segment(SegmentArguments& a) {
     make_folder(a.folder);
 
     progress.attach(context, 0.1, 0.9);
-    Segmentation result = segment(mesh.view(), a.options, &context);
+    Segmentation result = on_file(a.mesh, [&] { return segment(mesh.view(), a.options, &context); });
 
     context.on_progress(nullptr);
     progress.show({Phase::write, 0.9, result.regions.size(), result.energy.total});

@@ -5,6 +5,7 @@
 #include "simplify/decimate.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/exit_code.h"
+#include "tools/cli/files.h"
 #include "tools/cli/stop_signals.h"
 
 #include <cstdio>
@@ -57,7 +58,7 @@ int run_simplify(const Arguments& arguments) {
     const StopSignals signals(context);
     const Mesh mesh = read_mesh(arguments.mesh, &context);
     // Refuses what is no mesh before the arrays are followed.
-    const MeshReport report = inspect(mesh.view(), 0, &context);
+    const MeshReport report = on_file(arguments.mesh, [&] { return inspect(mesh.view(), 0, &context); });
     const simplify::Decimated decimated = decimate(mesh, arguments, context);
     const bool stopped = context.cancelled() || context.past_deadline();
     runtime::in_arena(arguments.threads, [&] { write_mesh(arguments.output, to_mesh(decimated).view()); });
