@@ -17,6 +17,10 @@ namespace quadseg::exact {
 
 namespace {
 
+/// Of a facet, radians: at most, where curved surfaces tell; and where there are none to tell.
+constexpr double most_step = 0.9, unknown_step = 0.7;
+constexpr double suspicious_turn = 1.7;
+
 /// Sure facets, largest first, grown to planes; a facet inside an earlier plane is none of its own.
 std::vector<Candidate> plane_candidates(const Scene& scene) {
     std::vector<std::uint32_t> sure;
@@ -46,33 +50,52 @@ void append(std::vector<Candidate>& all, std::vector<Candidate>&& more) {
     for (Candidate& candidate : more) all.push_back(std::move(candidate));
 }
 
+/// A second opinion where facets turn suspiciously far: surfaces that turn less are searched beneath; selection
+/// decides.
+void ask_again(const Scene& scene, double step, std::vector<Candidate>& candidates) {
+    std::vector<std::uint8_t> covered(scene.mesh.face_count(), 0);
+    bool suspicious = false;
+    for (const Candidate& candidate : candidates) {
+        const bool turns = candidate.surface.type != SurfaceType::plane && candidate.step > suspicious_turn * step;
+        if (turns) suspicious = true;
+        if (!turns) {
+            for (const std::uint32_t f : candidate.faces) covered[f] = 1;
+        }
+    }
+    if (!suspicious) return;
+    append(candidates, search_surfaces(scene, {.most_step = suspicious_turn * step}, covered));
+}
+
 }  // namespace
 
 ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
     const Scene scene = build_scene(mesh, control);
     std::vector<Candidate> candidates = plane_candidates(scene);
     std::vector<std::uint8_t> covered(mesh.face_count(), 0);
-    append(candidates, search_surfaces(scene, false, covered));
-    Selection selection = select(scene, candidates);
+    append(candidates, search_surfaces(scene, {}, covered));
+    const double learned = learn_step(candidates);
+    const double step = learned > 0 ? std::min(learned, most_step) : unknown_step;
+    ask_again(scene, step, candidates);
+    Selection selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);
-    append(candidates, search_surfaces(scene, true, covered));
-    selection = select(scene, candidates);
+    append(candidates, search_surfaces(scene, {.loose = true}, covered));
+    selection = select(scene, candidates, step);
 
     Explained state;
     state.region = selection.owner;
     for (const Candidate& candidate : candidates) state.surface.push_back(candidate.surface);
     separate_parts(scene, state);
-    add_planes(scene, selection.largest_step, state);
-    extend_to_borders(scene, selection.largest_step, state);
-    unite_equal(scene, selection.largest_step, state);
+    add_planes(scene, step, state);
+    extend_to_borders(scene, step, state);
+    unite_equal(scene, step, state);
     absorb_scraps(scene, state);
-    unite_equal(scene, selection.largest_step, state);
+    unite_equal(scene, step, state);
 
     ExactSurfaces result;
     result.labels = std::move(state.region);
     result.surfaces = std::move(state.surface);
     result.noise = selection.noise;
-    result.largest_step = selection.largest_step;
+    result.largest_step = step;
     double covered_area = 0;
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
         if (result.labels[f] >= 0) covered_area += mesh.areas[f];

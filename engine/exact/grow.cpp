@@ -100,7 +100,7 @@ void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks) {
     std::vector<double> steps;
     const std::size_t stride = std::max<std::size_t>(1, candidate.faces.size() / fit_sample);
     for (std::size_t i = 0; i < candidate.faces.size(); i += stride) steps.push_back(fitter(candidate.faces[i]).step);
-    candidate.step = quantile(steps, 0.85);
+    candidate.step = quantile(steps, 0.5);
 }
 
 Candidate grow(const Scene& scene, const Surface& start, std::span<const std::uint32_t> patch, Marks& marks) {

@@ -222,9 +222,9 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     return best;
 }
 
-std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bool loose,
+std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
                                       const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
-    const double tolerance = loose ? scene.tolerances.loose_fit : scene.tolerances.fit;
+    const double tolerance = options.loose ? scene.tolerances.loose_fit : scene.tolerances.fit;
     // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
     const bool strips =
         scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[seed])) > 1 || is_long(scene, seed);
@@ -240,8 +240,8 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bo
             const std::optional<Surface> surface = explain(scene, faces, tolerance, marks);
             if (!surface) continue;
             Candidate candidate = grow(scene, *surface, faces, marks);
-            candidate.loose = loose;
-            if (candidate.faces.size() * 2 < faces.size()) continue;
+            candidate.loose = options.loose;
+            if (candidate.faces.size() * 2 < faces.size() || candidate.step > options.most_step) continue;
             if (candidate.gap > most_gap && !at_precision(scene, candidate)) continue;
             return candidate;
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "exact/grow.h"
+#include "exact/search.h"
 
 #include <cstdint>
 #include <functional>
@@ -34,7 +35,7 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
 
 /// Tries patches of falling size around a seed; grows the first surface that holds. Empty: no surface, or one that an
 /// honest look at its border refuses.
-std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, bool loose,
+std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
                                       const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
 }  // namespace quadseg::exact

@@ -18,11 +18,11 @@ constexpr std::size_t most_seeds_at_once = 8;
 /// One smooth chart: seeds farthest from creases first.
 class ChartSearch {
   public:
-    ChartSearch(const Scene& scene, std::vector<std::uint32_t> faces, bool loose, std::vector<std::uint8_t>& covered,
-                runtime::PerThread<Marks>& marks)
+    ChartSearch(const Scene& scene, std::vector<std::uint32_t> faces, const SearchOptions& options,
+                std::vector<std::uint8_t>& covered, runtime::PerThread<Marks>& marks)
         : scene_(scene),
           faces_(std::move(faces)),
-          loose_(loose),
+          options_(options),
           covered_(covered),
           marks_(marks),
           chart_(scene.chart[faces_.front()]) {
@@ -39,7 +39,7 @@ class ChartSearch {
             std::vector<std::optional<Candidate>> found(seeds.size());
             runtime::parallel_for(seeds.size(), 1, [&](std::size_t i) {
                 found[i] = find_surface(
-                    scene_, seeds[i], loose_,
+                    scene_, seeds[i], options_,
                     [&](std::uint32_t f) { return scene_.chart[f] != chart_ || covered_[f] != explained; },
                     marks_.local());
             });
@@ -96,7 +96,7 @@ class ChartSearch {
 
     const Scene& scene_;
     std::vector<std::uint32_t> faces_;
-    bool loose_;
+    SearchOptions options_;
     std::vector<std::uint8_t>& covered_;
     runtime::PerThread<Marks>& marks_;
     std::int32_t chart_;
@@ -106,7 +106,8 @@ class ChartSearch {
 
 }  // namespace
 
-std::vector<Candidate> search_surfaces(const Scene& scene, bool loose, std::vector<std::uint8_t>& covered) {
+std::vector<Candidate> search_surfaces(const Scene& scene, const SearchOptions& options,
+                                       std::vector<std::uint8_t>& covered) {
     std::vector<std::vector<std::uint32_t>> charts(scene.chart_count);
     for (std::size_t f = 0; f < scene.chart.size(); ++f) {
         if (scene.chart[f] >= 0 && covered[f] == 0) {
@@ -116,13 +117,25 @@ std::vector<Candidate> search_surfaces(const Scene& scene, bool loose, std::vect
     std::vector<std::vector<Candidate>> found(charts.size());
     runtime::PerThread<Marks> marks;
     runtime::parallel_for(charts.size(), 1, [&](std::size_t c) {
-        if (!charts[c].empty()) found[c] = ChartSearch(scene, std::move(charts[c]), loose, covered, marks).run();
+        if (!charts[c].empty()) found[c] = ChartSearch(scene, std::move(charts[c]), options, covered, marks).run();
     });
     std::vector<Candidate> all;
     for (auto& list : found) {
         for (Candidate& candidate : list) all.push_back(std::move(candidate));
     }
     return all;
+}
+
+double learn_step(const std::vector<Candidate>& candidates) {
+    std::vector<double> steps;
+    for (const Candidate& k : candidates) {
+        const bool ruled = k.surface.type == SurfaceType::cylinder || k.surface.type == SurfaceType::cone;
+        if (ruled && k.facets >= 8) steps.push_back(k.step);
+    }
+    if (steps.empty()) return 0;
+    const auto q90 = steps.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(steps.size() - 1));
+    std::nth_element(steps.begin(), q90, steps.end());
+    return 1.3 * *q90;
 }
 
 }  // namespace quadseg::exact

@@ -7,7 +7,17 @@
 
 namespace quadseg::exact {
 
+struct SearchOptions {
+    bool loose = false;     ///< second pass, for parts whose edge curves are approximations
+    double most_step = 10;  ///< candidates whose facets turn further are not taken, radians
+};
+
 /// Candidates of all charts, in an order that depends on the mesh only. `covered` (a flag a face) is read and extended.
-std::vector<Candidate> search_surfaces(const Scene& scene, bool loose, std::vector<std::uint8_t>& covered);
+std::vector<Candidate> search_surfaces(const Scene& scene, const SearchOptions& options,
+                                       std::vector<std::uint8_t>& covered);
+
+/// What the tessellator let a facet turn, radians: from the cylinders and cones with many facets, whose rulings leave
+/// no doubt. A surface laid through the rims of several bands turns further. 0: nothing is known.
+double learn_step(const std::vector<Candidate>& candidates);
 
 }  // namespace quadseg::exact

@@ -33,14 +33,13 @@ double weighted_quantile(std::vector<std::pair<double, double>> values, double s
 
 class Selector {
   public:
-    Selector(const Scene& scene, const std::vector<Candidate>& candidates)
-        : scene_(scene), candidates_(candidates), alive_(candidates.size(), 1) {}
+    Selector(const Scene& scene, const std::vector<Candidate>& candidates, double largest_step)
+        : scene_(scene), candidates_(candidates), largest_step_(largest_step), alive_(candidates.size(), 1) {}
 
     Selection run() {
         find_noise();
         demote();
         drop_duplicates();
-        find_largest_step();
         demand_small_steps();
         score_claims();
         result_.owner.assign(scene_.mesh.face_count(), -1);
@@ -115,20 +114,10 @@ class Selector {
         }
     }
 
-    void find_largest_step() {
-        std::vector<std::pair<double, double>> steps;
-        for (std::size_t c = 0; c < candidates_.size(); ++c) {
-            const Candidate& k = candidates_[c];
-            if (is_alive(c) && k.facets >= 8 && k.surface.type != SurfaceType::plane) steps.emplace_back(k.step, 1);
-        }
-        // Without any well supported curved surface nothing is known: allow what the crease angle allows.
-        result_.largest_step = steps.empty() ? 0.7 : std::min(0.9, 1.3 * weighted_quantile(std::move(steps), 0.9));
-    }
-
     void demand_small_steps() {
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& k = candidates_[c];
-            if (k.surface.type != SurfaceType::plane && k.facets <= 5 && k.step > result_.largest_step) alive_[c] = 0;
+            if (k.surface.type != SurfaceType::plane && k.facets <= 5 && k.step > largest_step_) alive_[c] = 0;
         }
     }
 
@@ -138,7 +127,7 @@ class Selector {
             if (!is_alive(c)) return;
             const Candidate& candidate = candidates_[c];
             const FaceFitter fitter(scene_, candidate.surface);
-            const double allowed_step = 1.7 * std::max(result_.largest_step, candidate.step);
+            const double allowed_step = 1.7 * std::max(largest_step_, candidate.step);
             claims_[c].reserve(candidate.faces.size());
             for (const std::uint32_t f : candidate.faces) {
                 const FaceFit fit = fitter(f);
@@ -146,7 +135,10 @@ class Selector {
                 // Logarithmic: errors of trim curves must not outvote the normal.
                 const double angle = std::isinf(fit.allowed) ? 0 : 2 * fit.angle / fit.allowed;
                 const double unit = std::max(2e-7 * scene_.tolerances.diagonal, 4 * scene_.tolerances.precision);
-                claims_[c].push_back(flat_cut ? -1.0F : static_cast<float>(std::log2(1 + fit.distance / unit) + angle));
+                // Of two surfaces through the same vertices the one that turns less between them is meant.
+                const double turn = 3 * std::log2(std::max(1.0, fit.step / largest_step_));
+                claims_[c].push_back(flat_cut ? -1.0F
+                                              : static_cast<float>(std::log2(1 + fit.distance / unit) + angle + turn));
             }
         });
     }
@@ -182,6 +174,7 @@ class Selector {
 
     const Scene& scene_;
     const std::vector<Candidate>& candidates_;
+    double largest_step_;
     std::vector<std::uint8_t> alive_;
     double trusted_ = 0;  ///< median distance up to which a fit is no accident
     std::vector<std::vector<float>> claims_;
@@ -190,8 +183,8 @@ class Selector {
 
 }  // namespace
 
-Selection select(const Scene& scene, const std::vector<Candidate>& candidates) {
-    return Selector(scene, candidates).run();
+Selection select(const Scene& scene, const std::vector<Candidate>& candidates, double largest_step) {
+    return Selector(scene, candidates, largest_step).run();
 }
 
 }  // namespace quadseg::exact

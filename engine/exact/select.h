@@ -14,7 +14,7 @@ struct Selection {
     double largest_step = 0;  ///< tessellation step of this mesh: what the tessellator let a facet turn, radians
 };
 
-/// Candidates that are refused lose all their faces; the vector itself keeps its order and size.
-Selection select(const Scene& scene, const std::vector<Candidate>& candidates);
+/// `largest_step`: what a facet of this mesh may turn, radians. Candidates that are refused lose all their faces.
+Selection select(const Scene& scene, const std::vector<Candidate>& candidates, double largest_step);
 
 }  // namespace quadseg::exact
