@@ -36,7 +36,7 @@ quadric::Coefficients to_coefficients(const Surface& s);
 /// Rows of `axes`, right-handed: the last (also `axis`) is the axis of a cone, hyperboloid (two sheets: through both)
 /// or paraboloid (into its opening) and the generator of a cylinder; hyperbolic cylinder: the first meets the surface;
 /// parabolic cylinder: the second points into the opening. `semi_axes` in their order, lengths; elliptic cone: of the
-/// section at distance semi_axes[2] = 1 from the apex; paraboloids and parabolic cylinder: p in u² = p w, 0 for the
+/// section at distance semi_axes[2] from the apex; paraboloids and parabolic cylinder: p in u² = p w, 0 for the
 /// rest. `point`: centre, apex or vertex; cylinders: the axis (vertex) point nearest to `near`.
 Surface classify(const quadric::Coefficients& c, const Vec3& near, double radius, double tolerance = 1e-3);
 
