@@ -264,7 +264,8 @@ class BodyReader {
             for (std::size_t i = 0; i < count; ++i) {
                 for (std::size_t k = 0; k < 3; ++k) {
                     // A negative index becomes a huge one.
-                    const auto index = static_cast<std::uint64_t>(load<T, Order>(p + i * stride + k * sizeof(T)));
+                    const auto index = static_cast<std::uint64_t>(
+                        static_cast<std::int64_t>(load<T, Order>(p + i * stride + k * sizeof(T))));
                     if (index >= vertices && bad == count) bad = i;
                     out[3 * i + k] = static_cast<std::uint32_t>(index);
                 }

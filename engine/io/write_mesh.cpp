@@ -27,19 +27,20 @@ void check_arrays(const std::string& path, const MeshView& mesh) {
 /// Positions of 4 bytes when that loses nothing.
 bool all_floats(std::span<const double> positions) {
     constexpr std::size_t grain = 65536;
+    // Blocks that fail are counted: a vector of bool could not be written to by several tasks.
     return runtime::reduce_blocks(
-        positions.size(), grain, true,
-        [&](std::size_t begin, std::size_t end) {
-            bool exact = true;
-            for (std::size_t i = begin; i < end; ++i) {
-                const double x = positions[i];
-                // The conversion of a larger number would be undefined.
-                exact = exact && std::abs(x) <= std::numeric_limits<float>::max() &&
-                        static_cast<double>(static_cast<float>(x)) == x;
-            }
-            return exact;
-        },
-        [](bool a, bool b) { return a && b; });
+               positions.size(), grain, 0,
+               [&](std::size_t begin, std::size_t end) {
+                   bool exact = true;
+                   for (std::size_t i = begin; i < end; ++i) {
+                       const double x = positions[i];
+                       // The conversion of a larger number would be undefined.
+                       exact = exact && std::abs(x) <= std::numeric_limits<float>::max() &&
+                               static_cast<double>(static_cast<float>(x)) == x;
+                   }
+                   return exact ? 0 : 1;
+               },
+               [](int a, int b) { return a + b; }) == 0;
 }
 
 template <class Number>
