@@ -14,6 +14,7 @@ namespace quadseg::exact {
 namespace {
 
 constexpr std::array<std::size_t, 5> patch_sizes{40, 16, 8, 5, 3};
+constexpr std::array<std::size_t, 4> row_sizes{24, 10, 5, 3};
 constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
                            SurfaceType::torus};
 constexpr double most_gap = 0.3;
@@ -25,9 +26,20 @@ bool is_long(const Scene& scene, std::uint32_t f) {
     return 2 * scene.mesh.areas[f] > 3 * height * height;
 }
 
-/// Direction of the edges over which a row of facets is followed: the longest outer edge of the seed's facet, or the
-/// outer edge that is most across it.
-Vec3 rung_of_row(const Scene& scene, std::uint32_t seed, PatchOrder order) {
+Vec3 facet_centre(const Scene& scene, std::size_t facet) {
+    Vec3 sum;
+    double area = 0;
+    for (std::size_t j = scene.facets.begin[facet]; j < scene.facets.begin[facet + 1]; ++j) {
+        const std::uint32_t f = scene.facets.face[j];
+        sum += scene.mesh.centroid(f) * scene.mesh.areas[f];
+        area += scene.mesh.areas[f];
+    }
+    return area > 0 ? sum / area : scene.mesh.centroid(scene.facets.face[scene.facets.begin[facet]]);
+}
+
+/// Rows through a seed: over rungs parallel to the longest outer edge of its facet, or to the outer edge most across
+/// that, both ways.
+std::vector<PatchShape> rows_through(const Scene& scene, std::uint32_t seed) {
     const std::int32_t id = scene.facets.of_face[seed];
     const auto facet = static_cast<std::size_t>(id);
     std::vector<Vec3> edges;
@@ -41,11 +53,18 @@ Vec3 rung_of_row(const Scene& scene, std::uint32_t seed, PatchOrder order) {
     }
     const auto longer = [](const Vec3& a, const Vec3& b) { return squared_norm(a) < squared_norm(b); };
     const Vec3 longest = normalized(*std::max_element(edges.begin(), edges.end(), longer));
-    if (order == PatchOrder::along_row) return longest;
     const auto more_across = [&](const Vec3& a, const Vec3& b) {
         return std::abs(dot(longest, normalized(a))) > std::abs(dot(longest, normalized(b)));
     };
-    return normalized(*std::max_element(edges.begin(), edges.end(), more_across));
+    const Vec3 across = normalized(*std::max_element(edges.begin(), edges.end(), more_across));
+    const Vec3 normal = scene.facets.facet[facet].normal;
+    std::vector<PatchShape> rows;
+    for (const Vec3& rung : {longest, across}) {
+        const Vec3 forward = normalized(cross(rung, normal));
+        rows.push_back({rung, forward});
+        rows.push_back({rung, -forward});
+    }
+    return rows;
 }
 
 /// Half of the vertices on the surface to the last digit: no accident (those miss by 1e-7), whatever trim curves do to
@@ -151,7 +170,7 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
 
 }  // namespace
 
-Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, PatchOrder order,
+Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, const PatchShape& shape,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
     struct Step {
         double key;
@@ -165,7 +184,9 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
     std::priority_queue<Step> queue;
     std::size_t sequence = 0;
     queue.push({0, sequence++, seed});
-    const Vec3 rung = order == PatchOrder::breadth ? Vec3{} : rung_of_row(scene, seed, order);
+    const std::int32_t seed_facet = scene.facets.of_face[seed];
+    const bool row = squared_norm(shape.rung) > 0;
+    const Vec3 start = facet_centre(scene, static_cast<std::size_t>(seed_facet));
     std::vector<std::int32_t> taken;
     while (!queue.empty() && taken.size() < facets) {
         const std::uint32_t next = queue.top().face;
@@ -187,9 +208,12 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
                 if (scene.in_sure_plane(g) || scene.facets.of_face[g] == id || marks.has_face(g) || !usable(g))
                     continue;
                 double key = 0;
-                if (order != PatchOrder::breadth) {
-                    key = 1 -
-                          std::abs(dot(rung, normalized(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k))));
+                if (row) {
+                    // A step back beyond half a facet is the other way.
+                    const Vec3 a = scene.mesh.corner(f, k), b = scene.mesh.corner(f, (k + 1) % 3);
+                    if (scene.facets.of_face[f] == seed_facet && dot((a + b) / 2.0 - start, shape.forward) < 0)
+                        continue;
+                    key = 1 - std::abs(dot(shape.rung, normalized(b - a)));
                 }
                 queue.push({key, sequence++, g});
             }
@@ -228,11 +252,11 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, co
     // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
     const bool strips =
         scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[seed])) > 1 || is_long(scene, seed);
-    for (const PatchOrder order : {PatchOrder::breadth, PatchOrder::along_row, PatchOrder::across_row}) {
-        if (order != PatchOrder::breadth && !strips) break;
-        const Patch patch = collect_patch(scene, seed, patch_sizes.front(), order, usable, marks);
+    const auto try_patch = [&](const PatchShape& shape,
+                               std::span<const std::size_t> sizes) -> std::optional<Candidate> {
+        const Patch patch = collect_patch(scene, seed, sizes.front(), shape, usable, marks);
         std::size_t tried = 0;
-        for (const std::size_t size : patch_sizes) {
+        for (const std::size_t size : sizes) {
             const std::size_t facets = std::min(size, patch.facet_end.size());
             if (facets < 2 || facets == tried) continue;
             tried = facets;
@@ -245,6 +269,12 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, co
             if (candidate.gap > most_gap && !at_precision(scene, candidate)) continue;
             return candidate;
         }
+        return std::nullopt;
+    };
+    if (std::optional<Candidate> found = try_patch({}, patch_sizes)) return found;
+    if (!strips) return std::nullopt;
+    for (const PatchShape& row : rows_through(scene, seed)) {
+        if (std::optional<Candidate> found = try_patch(row, row_sizes)) return found;
     }
     return std::nullopt;
 }

@@ -20,13 +20,16 @@ struct Patch {
     }
 };
 
-/// In which order a patch takes its neighbours. On CAD tessellations breadth runs out of a row of long facets at once,
-/// over its short sides; a row is followed over edges parallel to one edge of the seed: its longest, or the one most
-/// across that.
-enum class PatchOrder { breadth, along_row, across_row };
+/// How a patch takes its neighbours. On CAD tessellations breadth runs out of a row of long facets at once, over its
+/// short sides; a row is followed over edges parallel to a rung, and to one side, since a seed at the end of a row has
+/// only one.
+struct PatchShape {
+    Vec3 rung;     ///< zero: breadth first
+    Vec3 forward;  ///< along the row
+};
 
 /// `usable(f)`: faces that may be part of it (not yet explained).
-Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, PatchOrder order,
+Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, const PatchShape& shape,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
 /// The surface that explains a patch, if one does within the tolerance.

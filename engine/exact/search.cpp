@@ -87,7 +87,7 @@ class ChartSearch {
     /// No seeds near a failed one; its faces stay free to be grown into.
     void hush(std::uint32_t seed) {
         const Patch patch = collect_patch(
-            scene_, seed, quiet_zone_, PatchOrder::breadth,
+            scene_, seed, quiet_zone_, PatchShape{},
             [&](std::uint32_t f) { return scene_.chart[f] == chart_ && covered_[f] != explained; }, marks_.local());
         for (const std::uint32_t f : patch.faces) covered_[f] = quiet;
         covered_[seed] = quiet;
