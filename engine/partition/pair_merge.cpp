@@ -196,7 +196,7 @@ class Merger {
                 }
             }
             MergeRegion joint = join(regions_[a], regions_[b]);
-            if (rules_.target == 0 && !acceptable(e, joint)) continue;
+            if ((rules_.target == 0 || rules_.only_acceptable) && !acceptable(e, joint)) continue;
             merge(a, b, std::move(joint), result);
         }
     }

@@ -43,6 +43,7 @@ struct RegionPair {
 std::vector<RegionPair> region_pairs(const Passage& passage, const Labels& labels, const runtime::RunControl& control);
 
 struct MergeRules {
+    bool only_acceptable = false;  ///< the rule below holds on the way to the target as well
     std::size_t target = 0;  ///< merge down to this many regions, whatever it costs; 0: as long as a pair is acceptable
     /// Acceptable: cost(ij) − cost(i) − cost(j) ≤ misfit · min(area) + noise · (dof(i) + dof(j) − dof(ij)).
     double misfit = 0;

@@ -4,7 +4,9 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <queue>
 
@@ -50,8 +52,10 @@ class Relaxer {
                 moments_ = {};
                 fitted_labels_ = {};
             }
-            std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
-            iterate(options_.steps, best, [this] { refit(); });
+            if (options_.steps >= 0) {
+                std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
+                iterate(options_.steps, best, [this] { refit(); });
+            }
         } catch (const runtime::Stopped&) {
             result_.stopped = true;
         }
@@ -119,7 +123,8 @@ class Relaxer {
                                         mesh_.corner(f, 1) - region.origin, mesh_.corner(f, 2) - region.origin,
                                         mesh_.normals[f], change->sign * mesh_.areas[f]);
                 }
-                const quadric::LadderFit fit = quadric::fit_ladder(region.moments, options_.fit.weight, false);
+                const MomentFit fit =
+                    options_.moment_fit ? options_.moment_fit(region.moments) : plane_or_quadric(region.moments);
                 result_.fits[r].proxy = {region.origin, fit.c, gradient_floor};
                 result_.fits[r].total = fit.energy;
             }
@@ -127,8 +132,32 @@ class Relaxer {
         sum_energy();
     }
 
+    MomentFit plane_or_quadric(const quadric::Moments& m) const {
+        const quadric::LadderFit fit = quadric::fit_ladder(m, options_.fit.weight, false);
+        return {fit.c, fit.energy};
+    }
+
+    double edge_length(std::size_t f, std::size_t k) const noexcept {
+        const auto& v = mesh_.faces[f];
+        return norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]]);
+    }
+
+    double border_length() const {
+        const auto of_faces = [&](std::size_t begin, std::size_t end) {
+            double sum = 0;
+            for (std::size_t f = begin; f < end; ++f) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t other = label_across(f, k);
+                    if (other > labels_[f] && labels_[f] >= 0) sum += edge_length(f, k);
+                }
+            }
+            return sum;
+        };
+        return runtime::reduce_blocks(labels_.size(), face_grain, 0.0, of_faces, std::plus<>());
+    }
+
     void sum_energy() {
-        result_.energy = 0;
+        result_.energy = options_.border_price > 0 ? options_.border_price * border_length() : 0;
         for (const quadric::RegionFit& fit : result_.fits) result_.energy += fit.total;
     }
 
@@ -180,43 +209,101 @@ class Relaxer {
         return border;
     }
 
-    std::int32_t best_label(std::size_t f) const noexcept {
+    struct Decision {
+        std::int32_t label;
+        double gain;
+    };
+
+    Decision decide(std::size_t f) const noexcept {
         const std::int32_t own = labels_[f];
-        std::int32_t best = own;
-        double lowest = -1;
+        std::array<std::int32_t, 3> other{};
+        std::array<double, 3> price{};  // of border length, were the face to have the label
+        double own_price = 0;
+        bool at_border = false;
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::int32_t other = label_across(f, k);
-            if (other < 0 || other == own || other == best) continue;
-            if (lowest < 0) lowest = energy(f, own) * (1 - options_.margin) - density_floor * mesh_.areas[f];
-            const double e = energy(f, other);
-            if (e < lowest || (e == lowest && best != own && other < best)) {
+            other[k] = label_across(f, k);
+            at_border = at_border || (other[k] >= 0 && other[k] != own);
+        }
+        if (!at_border) return {own, 0};
+        if (options_.border_price > 0) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (other[k] < 0) continue;
+                const double edge = options_.border_price * edge_length(f, k);
+                if (other[k] != own) own_price += edge;
+                for (std::size_t j = 0; j < 3; ++j) {
+                    if (other[j] != other[k]) price[j] += edge;
+                }
+            }
+        }
+        const double own_energy = energy(f, own) + own_price;
+        Decision best{own, 0};
+        double lowest = own_energy * (1 - options_.margin) - density_floor * mesh_.areas[f];
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (other[k] < 0 || other[k] == own || other[k] == best.label) continue;
+            const double e = energy(f, other[k]) + price[k];
+            if (e < lowest || (e == lowest && best.label != own && other[k] < best.label)) {
                 lowest = e;
-                best = other;
+                best = {other[k], own_energy - e};
             }
         }
         return best;
     }
 
-    /// Jacobi sweeps over the border until no face gains: E is a sum over faces, so all faces may decide at once.
+    /// Sweeps over the border until no face gains. Without a price of borders E is a sum over faces and all may decide
+    /// at once (Jacobi); with one, neighbours take turns: the larger gain first.
     bool move_faces() {
         std::vector<std::uint32_t> work = border_faces();
         std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
-        std::vector<std::int32_t> decided;
+        const bool take_turns = options_.border_price > 0;
+        if (take_turns && gain_.empty()) gain_.assign(labels_.size(), 0);
+        std::vector<Decision> decided;
         bool moved = false;
         for (int sweep = 0; sweep < most_sweeps && !work.empty(); ++sweep) {
             decided.resize(work.size());
             runtime::parallel_blocks(work.size(), work_grain, [&](std::size_t begin, std::size_t end) {
                 control_.check();
-                for (std::size_t i = begin; i < end; ++i) decided[i] = best_label(work[i]);
+                for (std::size_t i = begin; i < end; ++i) decided[i] = decide(work[i]);
             });
+            std::vector<std::uint32_t> waiting;
+            if (take_turns) waiting = wait_for_neighbors(work, decided);
             work = apply(work, decided);
             moved = moved || !work.empty();
+            for (const std::uint32_t f : waiting) {
+                if (stamp_[f] == sweep_stamp_) continue;
+                stamp_[f] = sweep_stamp_;
+                work.push_back(f);
+            }
         }
         return moved;
     }
 
+    /// Of two neighbours that both want to move the one with the smaller gain stays for this sweep.
+    std::vector<std::uint32_t> wait_for_neighbors(const std::vector<std::uint32_t>& work,
+                                                  std::vector<Decision>& decided) {
+        for (std::size_t i = 0; i < work.size(); ++i) {
+            gain_[work[i]] = decided[i].label != labels_[work[i]] ? decided[i].gain : 0;
+        }
+        std::vector<std::uint32_t> waiting;
+        for (std::size_t i = 0; i < work.size(); ++i) {
+            const std::uint32_t f = work[i];
+            if (decided[i].label == labels_[f]) continue;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = passage_.across(f, k);
+                if (g < 0) continue;
+                const double gain = gain_[static_cast<std::size_t>(g)];
+                if (gain > decided[i].gain || (gain == decided[i].gain && static_cast<std::uint32_t>(g) < f)) {
+                    waiting.push_back(f);
+                    decided[i].label = labels_[f];
+                    break;
+                }
+            }
+        }
+        for (const std::uint32_t f : work) gain_[f] = 0;
+        return waiting;
+    }
+
     /// Moves the faces and returns those that the moves may concern.
-    std::vector<std::uint32_t> apply(const std::vector<std::uint32_t>& work, const std::vector<std::int32_t>& decided) {
+    std::vector<std::uint32_t> apply(const std::vector<std::uint32_t>& work, const std::vector<Decision>& decided) {
         std::vector<std::uint32_t> concerned;
         ++sweep_stamp_;
         const auto concern = [&](std::size_t f) {
@@ -226,10 +313,10 @@ class Relaxer {
         };
         for (std::size_t i = 0; i < work.size(); ++i) {
             const std::size_t f = work[i];
-            if (decided[i] == labels_[f]) continue;
+            if (decided[i].label == labels_[f]) continue;
             dirty_[static_cast<std::size_t>(labels_[f])] = 1;
-            dirty_[static_cast<std::size_t>(decided[i])] = 1;
-            labels_[f] = decided[i];
+            dirty_[static_cast<std::size_t>(decided[i].label)] = 1;
+            labels_[f] = decided[i].label;
             concern(f);
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::int32_t g = passage_.across(f, k);
@@ -350,6 +437,7 @@ class Relaxer {
     Labels fitted_labels_;  ///< those that the moments belong to
     std::vector<std::uint8_t> dirty_;
     std::vector<std::uint32_t> stamp_;
+    std::vector<double> gain_;  ///< of the faces that want to move, else 0
     std::uint32_t sweep_stamp_ = 0;
     RegionFaces regions_;
     Relaxed result_;

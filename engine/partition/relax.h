@@ -9,24 +9,32 @@
 #include "runtime/run_control.h"
 
 #include <cstddef>
-#include <span>
+#include <functional>
 #include <vector>
 
 namespace quadseg::partition {
 
+/// A surface from moments about the region's origin.
+struct MomentFit {
+    quadric::Coefficients c{};
+    double energy = 0;
+};
+
 struct RelaxOptions {
     int moment_steps = 6;  ///< first steps with surfaces from summed moments: no face is visited to fit them
-    int steps = 6;         ///< then steps with complete fits, each {move faces, repair connectivity, refit}
+    int steps = 6;         ///< then steps with complete fits, each {move faces, repair connectivity, refit}; < 0: none
     double margin = 1e-4;  ///< a face moves when it gains more than this share of its energy
     double stop = 1e-3;    ///< ends when a step lowers the energy by less than this share
     quadric::RegionFitOptions fit;
-    /// Price of border length: > 0 makes borders short (Potts), as noise asks for.
+    /// Price of border length: > 0 makes borders short (Potts model), as noise asks for.
     double border_price = 0;
+    /// Fits of the first steps; none: plane or quadric by least squares. Callable from several threads at once.
+    std::function<MomentFit(const quadric::Moments&)> moment_fit = {};
 };
 
 struct Relaxed {
     std::vector<quadric::RegionFit> fits;  ///< one a label; regions without faces keep a default fit
-    double energy = 0;                     ///< Σ fits[r].total
+    double energy = 0;                     ///< Σ fits[r].total, and the price of the borders
     bool stopped = false;                  ///< by control: the best labels so far
 };
 

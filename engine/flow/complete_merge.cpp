@@ -1,0 +1,250 @@
+#include "flow/complete_merge.h"
+
+#include "flow/description_length.h"
+#include "quadric/fit.h"
+#include "quadric/ladder.h"
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadseg::flow {
+namespace {
+
+using partition::MergeRegion;
+
+constexpr std::size_t face_grain = 16384;
+
+struct Part {
+    MergeRegion moments;
+    quadric::RegionFit fit;
+    std::vector<std::uint32_t> faces;
+    double length = 0;  ///< of its description
+    bool alive = true;
+};
+
+struct Pair {
+    std::uint32_t a = 0, b = 0;
+    double border = 0;  ///< shared length
+    double rise = 0;    ///< of the description length
+    bool measured = false;
+};
+
+bool by_regions(const Pair& x, const Pair& y) noexcept {
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
+}
+
+class CompleteMerger {
+  public:
+    CompleteMerger(const partition::Passage& passage, partition::Labels& labels, std::vector<quadric::RegionFit>&& fits,
+                   std::vector<MergeRegion>&& moments, const CompleteMergeRules& rules,
+                   const runtime::RunControl& control)
+        : passage_(passage), mesh_(*passage.mesh), labels_(labels), rules_(rules), control_(control) {
+        const partition::RegionFaces faces = partition::region_faces(labels, fits.size());
+        parts_.resize(fits.size());
+        runtime::parallel_for(parts_.size(), 16, [&](std::size_t r) {
+            Part& part = parts_[r];
+            part.fit = fits[r];
+            part.moments = std::move(moments[r]);
+            part.faces.assign(faces.face.begin() + faces.begin[r], faces.face.begin() + faces.begin[r + 1]);
+            part.length = std::min(length_of(part.fit), length_of(part.moments));
+        });
+    }
+
+    std::size_t run() {
+        find_pairs();
+        while (merge_round()) {
+        }
+        return partition::compact(labels_);
+    }
+
+  private:
+    double length_of(const quadric::RegionFit& fit) const noexcept {
+        return fit.total + rules_.price * (fit.proxy.planar() ? 3 : quadric_parameters);
+    }
+    double length_of(const MergeRegion& region) const noexcept {
+        return fit_priced(region.moments, rules_.weight, rules_.price).length;
+    }
+
+    void find_pairs() {
+        std::vector<std::vector<Pair>> found((labels_.size() + face_grain - 1) / face_grain);
+        runtime::parallel_blocks(labels_.size(), face_grain, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t f = begin; f < end; ++f) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t g = passage_.across(f, k);
+                    if (g < 0) continue;
+                    const std::int32_t a = labels_[f], b = labels_[static_cast<std::size_t>(g)];
+                    if (a < 0 || b <= a) continue;
+                    const auto& v = mesh_.faces[f];
+                    found[begin / face_grain].push_back(
+                        {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                         norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]])});
+                }
+            }
+        });
+        for (const auto& part : found) pairs_.insert(pairs_.end(), part.begin(), part.end());
+        unite_equal_pairs();
+    }
+
+    /// Sums the borders of equal pairs, in the order they stand in; a sum has to be measured again only if it is one of
+    /// pairs that changed.
+    void unite_equal_pairs() {
+        std::stable_sort(pairs_.begin(), pairs_.end(), by_regions);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < pairs_.size(); ++i) {
+            if (kept > 0 && pairs_[kept - 1].a == pairs_[i].a && pairs_[kept - 1].b == pairs_[i].b) {
+                pairs_[kept - 1].border += pairs_[i].border;
+            } else {
+                pairs_[kept++] = pairs_[i];
+            }
+        }
+        pairs_.resize(kept);
+    }
+
+    double allowance(const Pair& p) const noexcept {
+        const double smaller = std::min(parts_[p.a].moments.moments.total_area, parts_[p.b].moments.moments.total_area);
+        return rules_.border_reward * p.border + rules_.misfit * smaller;
+    }
+
+    MergeRegion join(const MergeRegion& a, const MergeRegion& b) const noexcept {
+        MergeRegion r;
+        const double area = a.moments.total_area + b.moments.total_area;
+        r.origin = area > 0 ? a.origin + (b.origin - a.origin) * (b.moments.total_area / area) : a.origin;
+        r.moments = quadric::joined(a.moments, a.origin, b.moments, b.origin, r.origin);
+        return r;
+    }
+
+    double energy_under(const Part& small, const quadric::Proxy& proxy) const noexcept {
+        double sum = 0;
+        for (const std::uint32_t f : small.faces) {
+            sum += quadric::triangle_energy(proxy, mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2),
+                                            mesh_.normals[f], mesh_.areas[f])
+                       .hybrid(rules_.weight);
+        }
+        return sum;
+    }
+
+    quadric::RegionFit fit_union(const Part& a, const Part& b) const {
+        std::vector<std::uint32_t> faces;
+        faces.reserve(a.faces.size() + b.faces.size());
+        std::merge(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), std::back_inserter(faces));
+        return fit_faces(faces);
+    }
+    quadric::RegionFit fit_faces(const std::vector<std::uint32_t>& faces) const {
+        partition::GatheredRegion gathered;
+        partition::gather(mesh_, faces.data(), faces.size(), gathered);
+        quadric::RegionFitOptions options;
+        options.weight = rules_.weight;
+        options.plane_tolerance = 0;
+        return quadric::fit_region(gathered.soup(), options);
+    }
+
+    /// Rise of the description length when the pair becomes one region; the dearest way to know it comes last.
+    double rise_of(const Pair& p) const {
+        const Part &a = parts_[p.a], &b = parts_[p.b];
+        const double apart = a.length + b.length, limit = allowance(p);
+        const MergeRegion joint = join(a.moments, b.moments);
+        double rise = length_of(joint) - apart;
+        if (rise <= limit) return rise;
+        const bool a_is_small = a.faces.size() < b.faces.size();
+        const Part &small = a_is_small ? a : b, &large = a_is_small ? b : a;
+        if (rules_.size_ratio * static_cast<double>(small.faces.size()) < static_cast<double>(large.faces.size())) {
+            return std::min(rise, energy_under(small, large.fit.proxy) - small.length);
+        }
+        // No quadric is nearer to the pair than Taubin's: what it refuses by its distance alone need not be fitted.
+        const quadric::Spread size = quadric::spread(joint.moments);
+        if (size.radius > 0) {
+            const double scale = 1 / size.radius;
+            const quadric::Moments local = quadric::scaled(quadric::shifted(joint.moments, size.centroid), scale);
+            const double distance = quadric::fit_taubin(local).energy / (scale * scale * scale * scale);
+            if (distance + 3 * rules_.price - apart > limit) return rise;
+        }
+        rise = std::min(rise, length_of(fit_union(a, b)) - apart);
+        return rise;
+    }
+
+    bool merge_round() {
+        std::vector<std::uint32_t> unknown;
+        for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
+            if (!pairs_[i].measured) unknown.push_back(i);
+        }
+        runtime::parallel_for(unknown.size(), 1, [&](std::size_t i) {
+            control_.check();
+            Pair& p = pairs_[unknown[i]];
+            p.rise = rise_of(p);
+            p.measured = true;
+        });
+        std::vector<std::uint32_t> order;
+        for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
+            if (pairs_[i].rise <= allowance(pairs_[i])) order.push_back(i);
+        }
+        const auto merit = [&](std::uint32_t i) { return pairs_[i].rise - allowance(pairs_[i]); };
+        std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
+            const double mx = merit(x), my = merit(y);
+            return mx != my ? mx < my : x < y;
+        });
+        // A region takes part in one merge a round, with its best partner.
+        std::vector<std::uint8_t> taken(parts_.size(), 0);
+        std::vector<Pair> merges;
+        for (const std::uint32_t i : order) {
+            const Pair& p = pairs_[i];
+            if (taken[p.a] == 0 && taken[p.b] == 0) merges.push_back(p);
+            taken[p.a] = taken[p.b] = 1;
+        }
+        if (merges.empty()) return false;
+        std::vector<std::uint32_t> into(parts_.size());
+        for (std::uint32_t r = 0; r < into.size(); ++r) into[r] = r;
+        std::vector<std::uint8_t> changed(parts_.size(), 0);
+        for (const Pair& p : merges) {
+            into[p.b] = p.a;
+            changed[p.a] = changed[p.b] = 1;
+        }
+        runtime::parallel_for(merges.size(), 1, [&](std::size_t i) {
+            control_.check();
+            unite(merges[i]);
+        });
+        for (Pair& p : pairs_) {
+            if (changed[p.a] != 0 || changed[p.b] != 0) p.measured = false;
+            const std::uint32_t a = into[p.a], b = into[p.b];
+            p.a = std::min(a, b);
+            p.b = std::max(a, b);
+        }
+        std::erase_if(pairs_, [](const Pair& p) { return p.a == p.b; });
+        unite_equal_pairs();
+        return true;
+    }
+
+    void unite(const Pair& p) {
+        Part &a = parts_[p.a], &b = parts_[p.b];
+        std::vector<std::uint32_t> faces;
+        faces.reserve(a.faces.size() + b.faces.size());
+        std::merge(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), std::back_inserter(faces));
+        for (const std::uint32_t f : b.faces) labels_[f] = static_cast<std::int32_t>(p.a);
+        const double expected = a.length + b.length + p.rise;
+        a.moments = join(a.moments, b.moments);
+        a.faces = std::move(faces);
+        b.faces = {};
+        b.alive = false;
+        a.fit = fit_faces(a.faces);
+        a.length = std::min({expected, length_of(a.fit), length_of(a.moments)});
+    }
+
+    const partition::Passage& passage_;
+    const mesh::WorkMesh& mesh_;
+    partition::Labels& labels_;
+    const CompleteMergeRules& rules_;
+    const runtime::RunControl& control_;
+    std::vector<Part> parts_;
+    std::vector<Pair> pairs_;
+};
+
+}  // namespace
+
+std::size_t merge_by_complete_fits(const partition::Passage& passage, partition::Labels& labels,
+                                   std::vector<quadric::RegionFit> fits, std::vector<partition::MergeRegion> moments,
+                                   const CompleteMergeRules& rules, const runtime::RunControl& control) {
+    return CompleteMerger(passage, labels, std::move(fits), std::move(moments), rules, control).run();
+}
+
+}  // namespace quadseg::flow

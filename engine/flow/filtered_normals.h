@@ -1,0 +1,16 @@
+// Normals smoothed within smooth parts and kept apart across creases: to grow leaves by on scans, and for nothing else
+// (in an energy they round the creases).
+#pragma once
+
+#include "mesh/work_mesh.h"
+#include "runtime/run_control.h"
+
+#include <vector>
+
+namespace quadseg::flow {
+
+/// One or two averages over the ring of faces that share a vertex, then `passes` bilateral ones. Throws Stopped.
+std::vector<Vec3> filtered_normals(const mesh::WorkMesh& mesh, int averages, int passes,
+                                   const runtime::RunControl& control);
+
+}  // namespace quadseg::flow
