@@ -278,7 +278,9 @@ SurfaceFit fit_type(SurfaceType type, const PointSet& p, const Coefficients& sta
     return f;
 }
 
-SurfaceFit choose_surface_fit(const PointSet& p, const Coefficients& start, const ChoiceOptions& options) {
+namespace {
+
+SurfaceFit choose_among_all(const PointSet& p, const Coefficients& start, const ChoiceOptions& options) {
     SurfaceFit none;
     none.surface.type = SurfaceType::quadric;
     none.surface.coefficients = start;
@@ -313,6 +315,36 @@ SurfaceFit choose_surface_fit(const PointSet& p, const Coefficients& start, cons
     for (const Candidate& c : candidates)
         if (c.fit.rms <= limit && (!chosen || score(c) < score(*chosen))) chosen = &c;
     return chosen->fit;
+}
+
+/// Every k-th point.
+struct Sample {
+    std::vector<Vec3> points, normals;
+    std::vector<double> weights;
+    Sample(const PointSet& p, std::size_t step) {
+        for (std::size_t i = 0; i < p.points.size(); i += step) {
+            points.push_back(p.points[i]);
+            if (p.normals.size() == p.points.size()) normals.push_back(p.normals[i]);
+            if (p.weights.size() == p.points.size()) weights.push_back(p.weights[i]);
+        }
+    }
+};
+
+}  // namespace
+
+SurfaceFit choose_surface_fit(const PointSet& p, const Coefficients& start, const ChoiceOptions& options) {
+    const std::size_t n = p.points.size(), most = std::max<std::size_t>(options.sample, 64);
+    if (n <= most) return choose_among_all(p, start, options);
+    const Sample sample(p, (n + most - 1) / most);
+    SurfaceFit f = choose_among_all({sample.points, sample.normals, sample.weights}, start, options);
+    if (!f.ok) return f;
+    if (f.surface.type <= SurfaceType::torus) {
+        const SurfaceFit all = refine(f.surface, p, options.fit);
+        if (all.ok) return all;
+    }
+    f.surface.coefficients =
+        f.surface.type > SurfaceType::torus ? normalised_to(f.surface.coefficients, p) : f.surface.coefficients;
+    return measure(f.surface, p);
 }
 
 Surface choose_surface(const PointSet& p, const Coefficients& start, const ChoiceOptions& options) {
