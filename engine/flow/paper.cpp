@@ -29,6 +29,7 @@ constexpr double teleport_share = 0.5;
 constexpr double worthwhile_share = 0.5;
 /// A teleportation is tried with as many different seeds.
 constexpr std::size_t teleport_attempts = 2;
+constexpr std::size_t teleport_regions_considered = 16;
 /// Iterations of a Lloyd run after which a teleportation that is still worse by this factor is given up.
 constexpr int trial_iterations = 6;
 constexpr double hopeless_factor = 1.5;
@@ -187,8 +188,8 @@ class PaperFlow {
         return true;
     }
 
-    /// Region teleportation: a merge and an insertion elsewhere, kept when the energy falls. The split tried first is
-    /// that of the region of the largest energy, which bounds what a split can save.
+    /// Region teleportation: a merge and an insertion elsewhere, kept when the energy falls. Where no pair promises to
+    /// pay, the order is turned round: an insertion and the merge that it makes possible.
     void teleport_regions() {
         Failures failed;
         for (int i = 0; i < paper_.teleportations; ++i) {
@@ -196,7 +197,11 @@ class PaperFlow {
             const auto move = next_teleportation(failed);
             if (!move) return;
             try {
-                if (teleport(*move) && loop_.state().energy < before.energy * (1 - least_progress)) continue;
+                const bool done = move->merge_first ? merge_and_insert(*move) : insert_and_merge(*move);
+                if (done && loop_.state().energy < before.energy * (1 - least_progress)) {
+                    best_.note(loop_.state());
+                    continue;
+                }
             } catch (const runtime::Stopped&) {
                 loop_.restore(before);
                 throw;
@@ -209,45 +214,77 @@ class PaperFlow {
     using Stamps = std::array<std::uint64_t, 3>;
     using Failures = std::map<Stamps, std::size_t>;  ///< how many attempts have failed
     struct Teleportation {
-        partition::RegionPair merge;
         std::uint32_t split = 0;
+        bool merge_first = false;
+        partition::RegionPair merge;
         int rounds = 0;
-        Stamps stamps;  ///< of the region to split and of the pair
+        Stamps stamps{};  ///< of the region to split and of the pair: no region has stamp 0
     };
 
+    /// The move of the largest promise: a split can save at most the energy of its region, so only the regions of
+    /// largest energy are looked at.
     std::optional<Teleportation> next_teleportation(const Failures& failed) {
         const auto candidates = loop_.merge_candidates();
         const LoopState& state = loop_.state();
+        std::vector<std::uint32_t> costly;
+        for (std::uint32_t r = 0; r < state.regions(); ++r) {
+            if (loop_.face_count(r) > 1 && state.fits[r].total > least_progress * state.energy) costly.push_back(r);
+        }
+        std::sort(costly.begin(), costly.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return state.fits[a].total != state.fits[b].total ? state.fits[a].total > state.fits[b].total : a < b;
+        });
+        if (costly.size() > teleport_regions_considered) costly.resize(teleport_regions_considered);
+        const auto attempts = [&](const Stamps& stamps) {
+            const auto found = failed.find(stamps);
+            return found == failed.end() ? std::size_t{0} : found->second;
+        };
         std::optional<Teleportation> best;
         double best_gain = 0;
         for (const partition::MergeCandidate& c : candidates) {
             if (!c.valid) break;
-            for (std::uint32_t r = 0; r < state.regions(); ++r) {
-                if (r == c.pair.a || r == c.pair.b || loop_.face_count(r) < 2) continue;
+            for (const std::uint32_t r : costly) {
+                if (r == c.pair.a || r == c.pair.b) continue;
                 const Stamps stamps{state.stamps[r], state.stamps[c.pair.a], state.stamps[c.pair.b]};
                 const double gain = teleport_share * state.fits[r].total - c.increase;
-                if (!(gain > best_gain)) continue;
-                const auto attempts = failed.find(stamps);
-                const std::size_t attempt = attempts == failed.end() ? 0 : attempts->second;
-                if (attempt >= teleport_attempts) continue;
+                if (!(gain > best_gain) || attempts(stamps) >= teleport_attempts) continue;
                 best_gain = gain;
-                best = Teleportation{c.pair, r, smoothing_rounds[attempt], stamps};
+                best = Teleportation{r, true, c.pair, smoothing_rounds[attempts(stamps)], stamps};
             }
+        }
+        for (const std::uint32_t r : costly) {
+            const Stamps stamps{state.stamps[r], 0, 0};
+            if (best || attempts(stamps) >= teleport_attempts) continue;
+            best = Teleportation{r, false, {}, smoothing_rounds[attempts(stamps)], stamps};
         }
         return best;
     }
 
-    bool teleport(const Teleportation& move) {
-        const double before = loop_.state().energy;
+    bool merge_and_insert(const Teleportation& move) {
         // merge() moves the last region to the larger label of the pair.
         const auto last = static_cast<std::uint32_t>(loop_.state().regions() - 1);
+        const std::uint32_t split = move.split == last ? move.merge.b : move.split;
+        const double before = loop_.state().energy;
         loop_.merge(move.merge.a, move.merge.b);
-        const auto face = loop_.face_to_split(move.split == last ? move.merge.b : move.split, move.rounds);
+        const auto face = loop_.face_to_split(split, move.rounds);
         if (!face || !loop_.insert(*face)) return false;
-        loop_.lloyd(std::min(trial_iterations, paper_.lloyd_iterations), FloodScope::affected, false);
+        return settle(before, false);
+    }
+    bool insert_and_merge(const Teleportation& move) {
+        const double before = loop_.state().energy;
+        const auto face = loop_.face_to_split(move.split, move.rounds);
+        if (!face || !loop_.insert(*face)) return false;
+        loop_.lloyd(paper_.lloyd_iterations, FloodScope::affected, false);
+        const auto candidates = loop_.merge_candidates();
+        if (candidates.empty() || !candidates[0].valid) return false;
+        if (loop_.state().energy + candidates[0].increase > hopeless_factor * before) return false;
+        loop_.merge(candidates[0].pair.a, candidates[0].pair.b);
+        return settle(before, true);
+    }
+    /// Lloyd iterations after a teleportation, few when they lead nowhere.
+    bool settle(double before, bool start_counts) {
+        loop_.lloyd(std::min(trial_iterations, paper_.lloyd_iterations), FloodScope::affected, start_counts);
         if (loop_.state().energy > hopeless_factor * before) return false;
         loop_.lloyd(paper_.lloyd_iterations, FloodScope::all, true);
-        best_.note(loop_.state());
         return true;
     }
 

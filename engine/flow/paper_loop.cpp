@@ -197,24 +197,11 @@ void VariationalLoop::fit_regions() {
         const std::uint32_t r = changed[i];
         partition::GatheredRegion gathered;
         partition::gather(mesh_, faces_[r].data(), faces_[r].size(), gathered);
-        quadric::RegionFit fit = policy_.fit(gathered.soup());
-        // Neither fit is an exact minimum: the proxy that the flood used may be the better one still.
-        double kept_energy = 0;
+        state_.fits[r] = policy_.fit(gathered.soup());
         areas_[r] = 0;
         for (const std::uint32_t f : faces_[r]) {
             areas_[r] += mesh_.areas[f];
-            kept_energy += state_.density[f] * mesh_.areas[f];
-        }
-        const bool has_proxy = state_.stamps[r] != 0;
-        quadric::RegionFit& current = state_.fits[r];
-        if (has_proxy && kept_energy < fit.total && quadric::is_valid(current.proxy, gathered.soup())) {
-            current.total = kept_energy;
-            current.valid = true;
-            return;
-        }
-        current = fit;
-        for (const std::uint32_t f : faces_[r]) {
-            state_.density[f] = partition::error_density(mesh_, f, fit.proxy, policy_.metric);
+            state_.density[f] = partition::error_density(mesh_, f, state_.fits[r].proxy, policy_.metric);
         }
     });
     for (const std::uint32_t r : changed) {
@@ -269,7 +256,6 @@ void VariationalLoop::merge(std::uint32_t a, std::uint32_t b) {
     std::vector<std::uint32_t> both(faces_[a].size() + faces_[b].size());
     std::merge(faces_[a].begin(), faces_[a].end(), faces_[b].begin(), faces_[b].end(), both.begin());
     faces_[a] = std::move(both);
-    state_.stamps[a] = 0;  // no proxy of the union yet
     new_faces_[a] = 1;
     const std::size_t last = state_.regions() - 1;
     if (b != last) {
