@@ -17,7 +17,7 @@ struct Candidate {
     double area = 0;
     double median = 0;   ///< of the |distance| of its vertices
     double gap = 0;      ///< share of the border beyond which the neighbour creeps away
-    double step = 0;     ///< median of the faces' steps, radians
+    double step = 0;     ///< 75 % quantile, by area, of the faces' steps, radians
     bool loose = false;  ///< fitted in the second pass
 };
 

@@ -2,6 +2,7 @@
 
 #include "exact/complete.h"
 #include "exact/explained.h"
+#include "exact/face_fit.h"
 #include "exact/grow.h"
 #include "exact/scene.h"
 #include "exact/search.h"
@@ -37,7 +38,7 @@ std::vector<Candidate> plane_candidates(const Scene& scene) {
         plane.point = to_array(facet.normal * facet.offset);
         const std::span<const std::uint32_t> faces(scene.facets.face.data() + scene.facets.begin[sure[i]],
                                                    scene.facets.size(sure[i]));
-        candidates[i] = grow(scene, plane, faces, marks.local());
+        candidates[i] = grow(scene, plane, faces, largest_facet_turn, marks.local());
     });
     return candidates;
 }

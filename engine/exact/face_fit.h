@@ -16,10 +16,11 @@ inline constexpr double largest_facet_turn = 75 * std::numbers::pi / 180;
 
 class FaceFitter {
   public:
-    FaceFitter(const Scene& scene, const Surface& surface)
+    FaceFitter(const Scene& scene, const Surface& surface, double largest_turn = largest_facet_turn)
         : scene_(scene),
           evaluate_(surface),
           trim_(scene.tolerances.trim),
+          largest_turn_(largest_turn),
           apex_(to_vec3(surface.point)),
           cone_(surface.type == SurfaceType::cone) {}
 
@@ -65,7 +66,7 @@ class FaceFitter {
         fit.step = angle_of_chord(std::sqrt(std::max({squared_norm(a - b), squared_norm(b - c), squared_norm(c - a)})));
         constexpr double degree = std::numbers::pi / 180;
         // A flat face on a curved surface differs from the surface's normal by what that turns across the face.
-        if (fit.step > largest_facet_turn) {
+        if (fit.step > largest_turn_) {
             fit.angle = std::numeric_limits<double>::infinity();
             return;
         }
@@ -81,7 +82,7 @@ class FaceFitter {
 
     const Scene& scene_;
     surface::SurfaceEvaluator evaluate_;
-    double trim_;
+    double trim_, largest_turn_;
     Vec3 apex_;
     bool cone_;
 };

@@ -43,8 +43,8 @@ double gap_share(const Scene& scene, const FaceFitter& fitter, const Candidate& 
 }  // namespace
 
 std::vector<std::uint32_t> reach(const Scene& scene, const Surface& surface, std::span<const std::uint32_t> start,
-                                 Marks& marks) {
-    const FaceFitter fitter(scene, surface);
+                                 double largest_turn, Marks& marks) {
+    const FaceFitter fitter(scene, surface, largest_turn);
     const double tolerance = scene.tolerances.trim;
     const bool plane = surface.type == SurfaceType::plane;
     marks.prepare(scene.mesh.face_count(), scene.mesh.vertex_count());
@@ -97,21 +97,36 @@ void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks) {
     std::sort(facets.begin(), facets.end());
     candidate.facets = static_cast<std::size_t>(std::unique(facets.begin(), facets.end()) - facets.begin());
     candidate.gap = gap_share(scene, fitter, candidate, marks);
-    std::vector<double> steps;
+    // By area: a surface laid through the rims of three bands turns most across the widest of them.
+    std::vector<std::pair<double, double>> steps;
+    double stepped_area = 0;
     const std::size_t stride = std::max<std::size_t>(1, candidate.faces.size() / fit_sample);
-    for (std::size_t i = 0; i < candidate.faces.size(); i += stride) steps.push_back(fitter(candidate.faces[i]).step);
-    candidate.step = quantile(steps, 0.5);
+    for (std::size_t i = 0; i < candidate.faces.size(); i += stride) {
+        steps.emplace_back(fitter(candidate.faces[i]).step, scene.mesh.areas[candidate.faces[i]]);
+        stepped_area += steps.back().second;
+    }
+    std::sort(steps.begin(), steps.end());
+    candidate.step = steps.empty() ? 0 : steps.back().first;
+    double below = 0;
+    for (const auto& [step, area] : steps) {
+        below += area;
+        if (below >= 0.75 * stepped_area) {
+            candidate.step = step;
+            break;
+        }
+    }
 }
 
-Candidate grow(const Scene& scene, const Surface& start, std::span<const std::uint32_t> patch, Marks& marks) {
+Candidate grow(const Scene& scene, const Surface& start, std::span<const std::uint32_t> patch, double largest_turn,
+               Marks& marks) {
     Candidate candidate;
     candidate.surface = start;
-    candidate.faces = reach(scene, start, patch, marks);
+    candidate.faces = reach(scene, start, patch, largest_turn, marks);
     for (int refit = 0; refit < most_refits; ++refit) {
         const std::vector<Vec3> points = vertices_of(scene, candidate.faces, fit_sample, marks);
         const surface::SurfaceFit fit = surface::refine(candidate.surface, {points, {}, {}}, {});
         if (!fit.ok) break;
-        std::vector<std::uint32_t> faces = reach(scene, fit.surface, candidate.faces, marks);
+        std::vector<std::uint32_t> faces = reach(scene, fit.surface, candidate.faces, largest_turn, marks);
         if (faces.size() < candidate.faces.size() * 9 / 10) break;
         const bool stable = faces.size() == candidate.faces.size();
         candidate.surface = fit.surface;

@@ -30,13 +30,14 @@ class Marks {
 /// The faces that can be reached from `start` over faces on the surface (start faces that are not are left out). Sure
 /// planes are not entered unless the surface is a plane.
 std::vector<std::uint32_t> reach(const Scene& scene, const Surface& surface, std::span<const std::uint32_t> start,
-                                 Marks& marks);
+                                 double largest_turn, Marks& marks);
 
 /// Different vertices of faces, in order of first use; at most `most` of them, taken evenly.
 std::vector<Vec3> vertices_of(const Scene& scene, std::span<const std::uint32_t> faces, std::size_t most, Marks& marks);
 
 /// Grows, refits, grows again until the faces are stable; fills the figures of a candidate.
-Candidate grow(const Scene& scene, const Surface& start, std::span<const std::uint32_t> patch, Marks& marks);
+Candidate grow(const Scene& scene, const Surface& start, std::span<const std::uint32_t> patch, double largest_turn,
+               Marks& marks);
 
 /// Fills facets, area, median, gap and step of a candidate whose surface and faces are set.
 void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks);

@@ -263,7 +263,7 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, co
             const std::vector<std::uint32_t> faces = patch.up_to(facets);
             const std::optional<Surface> surface = explain(scene, faces, tolerance, marks);
             if (!surface) continue;
-            Candidate candidate = grow(scene, *surface, faces, marks);
+            Candidate candidate = grow(scene, *surface, faces, options.most_step, marks);
             candidate.loose = options.loose;
             if (candidate.faces.size() * 2 < faces.size() || candidate.step > options.most_step) continue;
             if (candidate.gap > most_gap && !at_precision(scene, candidate)) continue;

@@ -10,9 +10,14 @@ namespace quadseg::exact {
 
 namespace {
 
-/// Faces around a failed seed where no other seed is tried: grows with every failure in a row, since free-form patches
-/// would otherwise be tried face by face.
-constexpr std::size_t first_quiet_zone = 8, last_quiet_zone = 256;
+/// Facets around a failed seed where no other seed is tried: only its own at first, more with every failure in a row,
+/// since free-form patches would otherwise be tried facet by facet.
+std::size_t quiet_zone(std::size_t failures) {
+    constexpr std::size_t patience = 4, largest = 256;
+    if (failures <= patience) return 1;
+    return std::clamp<std::size_t>((failures - patience) * (failures - patience) / 2, 1, largest);
+}
+
 constexpr std::size_t most_seeds_at_once = 8;
 
 /// One smooth chart: seeds farthest from creases first.
@@ -48,7 +53,7 @@ class ChartSearch {
                 if (covered_[seeds[i]] == explained) continue;
                 if (found[i] && commit(std::move(*found[i]))) {
                     any = true;
-                    quiet_zone_ = first_quiet_zone;
+                    failures_ = 0;
                 } else {
                     hush(seeds[i]);
                 }
@@ -87,11 +92,10 @@ class ChartSearch {
     /// No seeds near a failed one; its faces stay free to be grown into.
     void hush(std::uint32_t seed) {
         const Patch patch = collect_patch(
-            scene_, seed, quiet_zone_, PatchShape{},
+            scene_, seed, quiet_zone(++failures_), PatchShape{},
             [&](std::uint32_t f) { return scene_.chart[f] == chart_ && covered_[f] != explained; }, marks_.local());
         for (const std::uint32_t f : patch.faces) covered_[f] = quiet;
         covered_[seed] = quiet;
-        quiet_zone_ = std::min(last_quiet_zone, quiet_zone_ + quiet_zone_ / 2);
     }
 
     const Scene& scene_;
@@ -101,7 +105,7 @@ class ChartSearch {
     runtime::PerThread<Marks>& marks_;
     std::int32_t chart_;
     std::vector<Candidate> candidates_;
-    std::size_t quiet_zone_ = first_quiet_zone, at_once_ = 1;
+    std::size_t failures_ = 0, at_once_ = 1;
 };
 
 }  // namespace

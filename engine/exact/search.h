@@ -2,6 +2,7 @@
 #pragma once
 
 #include "exact/candidate.h"
+#include "exact/face_fit.h"
 
 #include <vector>
 

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int rounds = 4;
 constexpr double least_share_kept = 0.3;
-constexpr double duplicate_share = 0.9;
-
-using Indices = std::vector<std::uint32_t>;
+/// A smaller candidate takes a face from a larger one only when it explains it better by this much: twins would share
+/// by rounding noise.
+constexpr float clear_gain = 0.5F;
 
 /// Value at `share` of the total weight; (value, weight) pairs.
 double weighted_quantile(std::vector<std::pair<double, double>> values, double share) {
@@ -37,9 +37,12 @@ class Selector {
         : scene_(scene), candidates_(candidates), largest_step_(largest_step), alive_(candidates.size(), 1) {}
 
     Selection run() {
+        by_area_.resize(candidates_.size());
+        std::iota(by_area_.begin(), by_area_.end(), 0U);
+        std::stable_sort(by_area_.begin(), by_area_.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return candidates_[a].area > candidates_[b].area; });
         find_noise();
         demote();
-        drop_duplicates();
         demand_small_steps();
         score_claims();
         result_.owner.assign(scene_.mesh.face_count(), -1);
@@ -53,46 +56,6 @@ class Selector {
 
   private:
     bool is_alive(std::size_t c) const { return alive_[c] != 0; }
-
-    /// A surface found twice, or again inside a larger find, would share faces by rounding noise.
-    void drop_duplicates() {
-        Indices order(candidates_.size());
-        std::iota(order.begin(), order.end(), 0U);
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return candidates_[a].area > candidates_[b].area; });
-        // A linked list of claims a face: overlaps are few, faces are many.
-        struct Claim {
-            std::uint32_t candidate;
-            std::int32_t next;
-        };
-        std::vector<Claim> claims;
-        std::vector<std::int32_t> head(scene_.mesh.face_count(), -1);
-        std::vector<double> shared(candidates_.size(), 0);
-        for (const std::uint32_t c : order) {
-            scene_.control.check();
-            if (!is_alive(c)) continue;
-            const Candidate& candidate = candidates_[c];
-            Indices touched;
-            for (const std::uint32_t f : candidate.faces) {
-                for (std::int32_t i = head[f]; i >= 0; i = claims[static_cast<std::size_t>(i)].next) {
-                    const std::uint32_t other = claims[static_cast<std::size_t>(i)].candidate;
-                    if (shared[other] == 0) touched.push_back(other);
-                    shared[other] += scene_.mesh.areas[f] + 1e-300;
-                }
-            }
-            for (const std::uint32_t other : touched) {
-                const Candidate& larger = candidates_[other];
-                const double limit = std::max(3 * candidate.median, trusted_);
-                if (shared[other] >= duplicate_share * candidate.area && larger.median <= limit) alive_[c] = 0;
-                shared[other] = 0;
-            }
-            if (!is_alive(c)) continue;
-            for (const std::uint32_t f : candidate.faces) {
-                claims.push_back({c, head[f]});
-                head[f] = static_cast<std::int32_t>(claims.size() - 1);
-            }
-        }
-    }
 
     void find_noise() {
         std::vector<std::pair<double, double>> medians;
@@ -108,8 +71,8 @@ class Selector {
         trusted_ = std::max({3 * s0, 1e-9 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision});
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& k = candidates_[c];
-            const bool accidental =
-                (k.median > limit && k.gap > 0.1) || (k.gap > 0.35 && k.median > 3 * s0) || k.median > 20 * limit;
+            const bool accidental = (k.median > limit && k.gap > 0.25) || (k.median > 10 * limit && k.gap > 0.1) ||
+                                    (k.gap > 0.35 && k.median > 3 * s0) || k.median > 20 * limit;
             if (accidental && k.surface.type != SurfaceType::plane) alive_[c] = 0;
         }
     }
@@ -146,12 +109,12 @@ class Selector {
     void assign() {
         std::vector<float> best(scene_.mesh.face_count(), 0);
         std::fill(result_.owner.begin(), result_.owner.end(), -1);
-        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+        for (const std::uint32_t c : by_area_) {
             if (!is_alive(c)) continue;
             for (std::size_t i = 0; i < candidates_[c].faces.size(); ++i) {
                 const std::uint32_t f = candidates_[c].faces[i];
                 const float score = claims_[c][i];
-                if (score < 0 || (result_.owner[f] >= 0 && best[f] <= score)) continue;
+                if (score < 0 || (result_.owner[f] >= 0 && best[f] <= score + clear_gain)) continue;
                 best[f] = score;
                 result_.owner[f] = static_cast<std::int32_t>(c);
             }
@@ -175,6 +138,7 @@ class Selector {
     const Scene& scene_;
     const std::vector<Candidate>& candidates_;
     double largest_step_;
+    std::vector<std::uint32_t> by_area_;
     std::vector<std::uint8_t> alive_;
     double trusted_ = 0;  ///< median distance up to which a fit is no accident
     std::vector<std::vector<float>> claims_;
