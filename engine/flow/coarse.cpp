@@ -1,0 +1,189 @@
+#include "flow/coarse.h"
+
+#include <quadseg/error.h>
+
+#include "flow/project_labels.h"
+#include "mesh/features.h"
+#include "simplify/decimate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <vector>
+
+namespace quadseg::flow {
+
+namespace {
+
+constexpr std::size_t smallest_mesh_that_pays = 10000;
+constexpr std::size_t smallest_coarse = 1000;
+constexpr std::size_t faces_per_coarse_face = 10;
+/// Simplified to more than this share there is nothing to gain.
+constexpr double useful_share = 0.7;
+/// A part of a projected region of this share of its main part is no fringe of jagged faces: a region of its own.
+constexpr double independent_share = 2;
+constexpr double default_crease = 30;
+
+std::vector<double> flat(const std::vector<Vec3>& points) {
+    std::vector<double> numbers;
+    numbers.reserve(3 * points.size());
+    for (const Vec3& p : points) numbers.insert(numbers.end(), {p.x, p.y, p.z});
+    return numbers;
+}
+std::vector<std::uint32_t> flat(const std::vector<std::array<std::uint32_t, 3>>& faces) {
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(3 * faces.size());
+    for (const auto& f : faces) numbers.insert(numbers.end(), f.begin(), f.end());
+    return numbers;
+}
+
+/// A working mesh of the simplified one. Its own unit frame would be that of its own box: lengths are brought back to
+/// the frame of the fine mesh.
+mesh::WorkMesh build_coarse_mesh(const mesh::WorkMesh& fine, const simplify::Decimated& decimated,
+                                 const runtime::RunControl& control) {
+    const std::vector<double> positions = flat(decimated.positions);
+    const std::vector<std::uint32_t> triangles = flat(decimated.faces);
+    mesh::WorkMesh coarse = mesh::build_work_mesh({positions, triangles}, control);
+    const double area_scale = 1 / (coarse.frame.scale * coarse.frame.scale);
+    for (Vec3& p : coarse.positions) p = coarse.frame.to_input(p);
+    for (double& area : coarse.areas) area *= area_scale;
+    coarse.total_area *= area_scale;
+    coarse.frame = fine.frame;
+    return coarse;
+}
+
+/// Features of the simplified mesh: the edges where the fine mesh has features between the faces that two simplified
+/// faces stand for. Found afresh they would be too many: simplified fillets and small cylinders have sharp edges. Where
+/// no fine edge lies between the two, or few of them are features, the edge's own sharpness has a say.
+class FeatureTransfer {
+  public:
+    FeatureTransfer(const FlowInput& fine, const std::vector<std::uint32_t>& face_map) {
+        const mesh::WorkMesh& mesh = fine.mesh;
+        for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::int32_t g = mesh.neighbors[f][k];
+                if (g < static_cast<std::int32_t>(f)) continue;  // once an edge; no borders
+                const std::uint32_t a = face_map[f], b = face_map[static_cast<std::uint32_t>(g)];
+                if (a == b) continue;
+                const double length =
+                    norm(mesh.corner(f, static_cast<int>((k + 1) % 3)) - mesh.corner(f, static_cast<int>(k)));
+                edges_.push_back({std::minmax(a, b), length, ((*fine.features)[f] >> k & 1U) != 0});
+            }
+        }
+        std::stable_sort(edges_.begin(), edges_.end(),
+                         [](const FineEdge& a, const FineEdge& b) { return a.between < b.between; });
+    }
+
+    bool is_feature(std::uint32_t a, std::uint32_t b, bool sharp) const {
+        const std::pair<std::uint32_t, std::uint32_t> between = std::minmax(a, b);
+        auto edge = std::lower_bound(edges_.begin(), edges_.end(), between,
+                                     [](const FineEdge& e, const auto& key) { return e.between < key; });
+        if (edge == edges_.end() || edge->between != between) return sharp;
+        double length = 0, feature_length = 0;
+        for (; edge != edges_.end() && edge->between == between; ++edge) {
+            length += edge->length;
+            if (edge->feature) feature_length += edge->length;
+        }
+        return feature_length >= 0.5 * length || (sharp && feature_length > 0);
+    }
+
+  private:
+    struct FineEdge {
+        std::pair<std::uint32_t, std::uint32_t> between;  ///< simplified faces, the smaller first
+        double length;
+        bool feature;
+    };
+    std::vector<FineEdge> edges_;
+};
+
+mesh::FeatureEdges transfer_features(const FlowInput& fine, const std::vector<std::uint32_t>& face_map,
+                                     const mesh::WorkMesh& coarse, double degrees) {
+    const FeatureTransfer transfer(fine, face_map);
+    const mesh::FeatureEdges sharp = mesh::find_feature_edges(coarse, degrees, fine.control);
+    mesh::FeatureEdges features(coarse.face_count(), 0);
+    for (std::size_t f = 0; f < coarse.face_count(); ++f) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int32_t g = coarse.neighbors[f][k];
+            if (g == mesh::no_face) continue;
+            const std::uint32_t a = coarse.input_face[f], b = coarse.input_face[static_cast<std::size_t>(g)];
+            if (transfer.is_feature(a, b, (sharp[f] >> k & 1U) != 0)) {
+                features[f] = static_cast<std::uint8_t>(features[f] | 1U << k);
+            }
+        }
+    }
+    return features;
+}
+
+struct CoarseResult {
+    FlowResult flow;
+    partition::Labels labels;  ///< of the fine mesh, connected
+};
+
+/// None: the mesh cannot be simplified.
+std::optional<CoarseResult> segment_simplified(const FlowInput& input, std::size_t coarse_faces,
+                                               const FlowFunction& flow_on_coarse) {
+    simplify::DecimateOptions options;
+    options.target_faces = coarse_faces;
+    options.feature_degrees = input.options.feature_angle > 0 ? input.options.feature_angle : default_crease;
+    options.should_stop = [&] { return input.control.should_stop(); };
+    const simplify::Decimated decimated = simplify::decimate(input.mesh.positions, input.mesh.faces, options);
+    input.control.check();
+    const auto fine_faces = static_cast<double>(input.mesh.face_count());
+    if (decimated.faces.empty() || static_cast<double>(decimated.faces.size()) > useful_share * fine_faces) return {};
+
+    const mesh::WorkMesh mesh = build_coarse_mesh(input.mesh, decimated, input.control);
+    std::optional<mesh::FeatureEdges> features;
+    if (input.features != nullptr) {
+        features = transfer_features(input, decimated.face_map, mesh, options.feature_degrees);
+    }
+    CoarseResult result;
+    result.flow = flow_on_coarse({mesh, features ? &*features : nullptr, input.options, input.control});
+    result.labels = project_labels(mesh::labels_to_input(mesh, result.flow.labels), decimated.face_map);
+    return result;
+}
+
+}  // namespace
+
+std::size_t coarse_face_count(const Options& options, std::size_t faces) {
+    if (options.coarse > 0) {
+        const auto wanted = static_cast<std::size_t>(options.coarse);
+        return wanted < faces ? wanted : 0;
+    }
+    if (options.coarse == 0 || options.preset != Preset::paper || faces < smallest_mesh_that_pays) return 0;
+    return std::max(smallest_coarse, faces / faces_per_coarse_face);
+}
+
+FlowResult run_coarse(const FlowInput& input, std::size_t coarse_faces, const FlowFunction& flow_on_coarse,
+                      const RefineFunction& refine_on_fine) {
+    const auto start = std::chrono::steady_clock::now();
+    input.control.report(Phase::coarse, 0.2);
+    std::optional<CoarseResult> coarse;
+    try {
+        coarse = segment_simplified(input, coarse_faces, flow_on_coarse);
+    } catch (const runtime::Stopped&) {
+        // The flow below stops at once with what it makes of that.
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::empty_mesh) throw;  // nothing left with an area
+    }
+    if (!coarse) return flow_on_coarse(input);
+
+    const partition::Passage passage{&input.mesh, input.features, {}};
+    const runtime::RunControl bounded(nullptr);  // linear work, also for a stopped run: it owes connected labels
+    const std::size_t regions = connect_labels(passage, coarse->labels, independent_share, bounded);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    FlowResult result;
+    if (coarse->flow.partial) {
+        result = std::move(coarse->flow);
+        result.labels = std::move(coarse->labels);
+        result.regions = regions;
+        result.surfaces.clear();  // they belong to the coarse regions
+    } else {
+        result = refine_on_fine(input, coarse->labels);
+        result.energies.insert(result.energies.begin(), coarse->flow.energies.begin(), coarse->flow.energies.end());
+        if (result.history.empty()) result.history = std::move(coarse->flow.history);
+    }
+    result.coarse_seconds = seconds;
+    return result;
+}
+
+}  // namespace quadseg::flow

@@ -1,0 +1,25 @@
+// Coarse to fine (section 5.2): segment a simplified mesh, bring its labels back, refine them at full resolution. Wraps
+// any flow.
+#pragma once
+
+#include "flow/flow.h"
+
+#include <cstddef>
+#include <functional>
+
+namespace quadseg::flow {
+
+using FlowFunction = std::function<FlowResult(const FlowInput&)>;
+using RefineFunction = std::function<FlowResult(const FlowInput&, const partition::Labels&)>;
+
+/// Faces of the simplified mesh that the options ask for on a mesh of `faces`; 0: none. Automatic (−1): where it pays,
+/// that is the paper's loop from 10,000 faces on; the default flow takes hardly longer than simplifying.
+std::size_t coarse_face_count(const Options& options, std::size_t faces);
+
+/// The flow sees a mesh in the unit frame of input.mesh, so that energies and tolerances mean the same. Where the mesh
+/// cannot be simplified to less than 70 % of its faces, the flow runs on it as it is. Stopped before or in the coarse
+/// flow: its labels as projected, partial.
+FlowResult run_coarse(const FlowInput& input, std::size_t coarse_faces, const FlowFunction& flow_on_coarse,
+                      const RefineFunction& refine_on_fine);
+
+}  // namespace quadseg::flow
