@@ -23,5 +23,7 @@ install(FILES ${PROJECT_BINARY_DIR}/quadsegConfig.cmake ${PROJECT_BINARY_DIR}/qu
 if(NOT BUILD_SHARED_LIBS)
     set(QUADSEG_PC_LIBS "-ltbb")
 endif()
+# Relative to itself, so that an installation may be staged or moved.
+file(RELATIVE_PATH QUADSEG_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(${PROJECT_SOURCE_DIR}/tools/cmake/quadseg.pc.in ${PROJECT_BINARY_DIR}/quadseg.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/quadseg.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
