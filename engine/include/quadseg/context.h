@@ -1,6 +1,8 @@
 // How a caller watches, bounds and stops a call.
 #pragma once
 
+#include <quadseg/export.h>
+
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -11,7 +13,7 @@ namespace quadseg {
 enum class Phase { read, prepare, coarse, fine, post, write };
 
 /// "read" and so on. Never null.
-const char* to_string(Phase phase) noexcept;
+QUADSEG_API const char* to_string(Phase phase) noexcept;
 
 struct Progress {
     Phase phase = Phase::read;
@@ -23,7 +25,7 @@ struct Progress {
 /// Handed to a call as its last argument. A copy shares the state of its original. cancel() may be called from any
 /// thread and from a signal handler; everything else is to be set before the call. One Context may serve several calls,
 /// also at once; a cancelled Context stays cancelled.
-class Context {
+class QUADSEG_API Context {
   public:
     using Clock = std::chrono::steady_clock;
     /// Called from the calling thread's arena, one call at a time, at most about 50 times a second; returning false

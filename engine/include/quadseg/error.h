@@ -1,6 +1,8 @@
 // What can go wrong, by name. Every exception that leaves the library is an Error (or std::bad_alloc).
 #pragma once
 
+#include <quadseg/export.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -20,7 +22,7 @@ enum class ErrorCode {
 };
 
 /// Thread-safe. what() says what, where (face, vertex, line, byte), and what to do.
-class Error : public std::runtime_error {
+class QUADSEG_API Error : public std::runtime_error {
   public:
     Error(ErrorCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
     ErrorCode code() const noexcept { return code_; }
@@ -30,6 +32,6 @@ class Error : public std::runtime_error {
 };
 
 /// "invalid_argument" and so on. Never null.
-const char* to_string(ErrorCode code) noexcept;
+QUADSEG_API const char* to_string(ErrorCode code) noexcept;
 
 }  // namespace quadseg

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <quadseg/context.h>
+#include <quadseg/export.h>
 #include <quadseg/mesh.h>
 #include <quadseg/segmentation.h>
 
@@ -15,7 +16,7 @@ namespace quadseg {
 /// extension. Polygons are cut into triangles that follow one another; STL corners at the same position are welded.
 /// Messages name the line or byte. Throws Error file_open, file_format, invalid_mesh, empty_mesh (no face at all),
 /// memory_limit, cancelled. Thread-safe.
-Mesh read_mesh(const std::string& path, Context* context = nullptr);
+QUADSEG_API Mesh read_mesh(const std::string& path, Context* context = nullptr);
 
 /// Colours and labels of the faces of a PLY.
 struct FaceColors {
@@ -25,13 +26,13 @@ struct FaceColors {
 
 /// Writes binary little-endian PLY (double positions where they need it, else float) under a temporary name, then
 /// renames. Nothing is left under the final name on failure. Throws Error file_write.
-void write_ply(const std::string& path, const MeshView& mesh, const FaceColors& faces = {});
+QUADSEG_API void write_ply(const std::string& path, const MeshView& mesh, const FaceColors& faces = {});
 /// By extension: .ply (binary), .off, .obj, .stl (binary).
-void write_mesh(const std::string& path, const MeshView& mesh);
+QUADSEG_API void write_mesh(const std::string& path, const MeshView& mesh);
 /// One integer a line. With `polygons` of the mesh not empty: one line a polygon.
-void write_labels(const std::string& path, std::span<const std::int32_t> labels,
-                  std::span<const std::uint32_t> polygons = {});
+QUADSEG_API void write_labels(const std::string& path, std::span<const std::int32_t> labels,
+                              std::span<const std::uint32_t> polygons = {});
 /// Writes a text file the same careful way: temporary name, flush to disk, rename.
-void write_text(const std::string& path, const std::string& text);
+QUADSEG_API void write_text(const std::string& path, const std::string& text);
 
 }  // namespace quadseg

@@ -1,6 +1,8 @@
 // Meshes as flat arrays, and what a check of one reports.
 #pragma once
 
+#include <quadseg/export.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -60,6 +62,6 @@ struct MeshReport {
 
 /// Checks a mesh without segmenting it. `feature_degrees` as Options::feature_angle (≤ 0: features are not counted).
 /// Throws Error invalid_mesh (index out of range, non-finite coordinate, named), empty_mesh, cancelled. Thread-safe.
-MeshReport inspect(const MeshView& mesh, double feature_degrees = 30, Context* context = nullptr);
+QUADSEG_API MeshReport inspect(const MeshView& mesh, double feature_degrees = 30, Context* context = nullptr);
 
 }  // namespace quadseg

@@ -2,6 +2,8 @@
 // the bounding box, angles in degrees, unless the name says otherwise.
 #pragma once
 
+#include <quadseg/export.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -79,13 +81,13 @@ struct Options {
 
 /// All problems of a set of options, one sentence each; empty when they are fine. segment() throws Error
 /// invalid_argument with them.
-std::vector<std::string> validate(const Options& options);
+QUADSEG_API std::vector<std::string> validate(const Options& options);
 
 /// "default"/"paper"; "quadric", "vsa_l21" … Never null.
-const char* to_string(Preset preset) noexcept;
-const char* to_string(Method method) noexcept;
+QUADSEG_API const char* to_string(Preset preset) noexcept;
+QUADSEG_API const char* to_string(Method method) noexcept;
 /// The reverse; false if there is no such name.
-bool from_string(const std::string& name, Preset& preset) noexcept;
-bool from_string(const std::string& name, Method& method) noexcept;
+QUADSEG_API bool from_string(const std::string& name, Preset& preset) noexcept;
+QUADSEG_API bool from_string(const std::string& name, Method& method) noexcept;
 
 }  // namespace quadseg

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <quadseg/context.h>
+#include <quadseg/export.h>
 #include <quadseg/mesh.h>
 #include <quadseg/options.h>
 
@@ -35,7 +36,7 @@ enum class SurfaceType : std::uint8_t {
 inline constexpr std::size_t surface_type_count = 17;
 
 /// "plane", "elliptic_cylinder" … Never null.
-const char* to_string(SurfaceType type) noexcept;
+QUADSEG_API const char* to_string(SurfaceType type) noexcept;
 
 /// f(x) = c · [1, x, y, z, x², xy, xz, y², yz, z²], in the input's coordinates and unit, ∇f along the mesh normals,
 /// area-weighted mean of |∇f| over its region 1.
@@ -76,7 +77,7 @@ enum class StopReason {
     deadline,   ///< partial result: out of time
     cancelled   ///< partial result: cancelled
 };
-const char* to_string(StopReason reason) noexcept;
+QUADSEG_API const char* to_string(StopReason reason) noexcept;
 
 struct Energy {
     double total = 0, distance = 0, normal = 0;  ///< unit cube; total = distance + ω·normal
@@ -98,7 +99,7 @@ struct Regularity {
     std::vector<std::int32_t> regions;
     bool snapped = false;
 };
-const char* to_string(Regularity::Kind kind) noexcept;
+QUADSEG_API const char* to_string(Regularity::Kind kind) noexcept;
 
 /// Length and mean turning angle of the borders between regions, before and after smoothing.
 struct BorderMeasure {
@@ -133,6 +134,6 @@ struct Segmentation {
 /// (invalid_argument, invalid_mesh, empty_mesh, memory_limit). Re-entrant; uses the caller's TBB arena, limited to
 /// Context::threads(). Source: Yan, Wang, Liu, Yang: Variational mesh segmentation via quadric surface fitting, CAD 44
 /// (2012).
-Segmentation segment(const MeshView& mesh, const Options& options = {}, Context* context = nullptr);
+QUADSEG_API Segmentation segment(const MeshView& mesh, const Options& options = {}, Context* context = nullptr);
 
 }  // namespace quadseg

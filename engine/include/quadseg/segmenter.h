@@ -1,6 +1,7 @@
 // The operations of a segmentation one by one, as the paper offers them to its user (section 4.3.3).
 #pragma once
 
+#include <quadseg/export.h>
 #include <quadseg/segmentation.h>
 
 #include <cstddef>
@@ -12,7 +13,7 @@ namespace quadseg {
 
 /// Holds a checked mesh and its current partition. Faces are named by input index, regions by their current label;
 /// after any operation labels are 0 … regions−1. Not thread-safe; different objects are independent. Throws Error.
-class Segmenter {
+class QUADSEG_API Segmenter {
   public:
     /// Checks the mesh (as segment()); the arrays may go afterwards. The partition is one region a connected component.
     explicit Segmenter(const MeshView& mesh, const Options& options = {}, Context* context = nullptr);
@@ -56,7 +57,7 @@ class Segmenter {
     Segmentation result() const;
 
   private:
-    struct Impl;
+    struct QUADSEG_LOCAL Impl;
     std::unique_ptr<Impl> impl_;
 };
 
