@@ -10,7 +10,7 @@ namespace quadseg::surface {
 struct ChoiceOptions {
     /// Types whose RMS distance is below the floor, or below `ratio` times the best type's, are equals.
     double noise_floor = 0;  ///< in the points' unit; rounding (1e-12 extents) is always part of it
-    double ratio = 1.5;
+    double ratio = 2;
     bool torus = true;          ///< may be chosen
     bool general = true;        ///< quadrics beyond plane … torus may be chosen
     std::size_t sample = 2000;  ///< larger sets choose on every k-th point, then refit plane … torus on all

@@ -200,7 +200,16 @@ SurfaceFit fit(SurfaceType type, const PointSet& p, const FitOptions& options) {
             break;
         default:
             if (attempt_from(start_torus(points, 0)) || attempt_from(start_torus(points, 1))) break;
-            attempt_from(start_torus_from(start_cylinder(points), points));
+            {
+                // A cylinder that fits tells a fillet's bend better than one that only starts.
+                const Surface cylinder = start_cylinder(points);
+                FitOptions few = options;
+                few.iterations = 5;
+                const Attempt fitted = attempt(cylinder, SurfaceType::cylinder, points, few);
+                if (attempt_from(start_torus_from(fitted.ok ? fitted.surface : cylinder, points))) break;
+                if (attempt_from(start_torus_from(cylinder, points))) break;
+                attempt_from(start_torus(points, 2));
+            }
     }
     return finished(best, type, true, points, p);
 }

@@ -146,7 +146,8 @@ class Problem {
         int plateau = 0, accepted = 0;
         bool fresh = false;
         NormalEquations<K> e{};
-        for (int iteration = 0; iteration < options.iterations; ++iteration) {
+        bool falling = false;  // the last step still paid a lot
+        for (int iteration = 0; iteration < (falling ? 2 : 1) * options.iterations; ++iteration) {
             if (!fresh) e = normal_equations(best.frame, scale);
             fresh = true;
             double step[K];
@@ -173,12 +174,14 @@ class Problem {
             const double gain = current - cost_there;
             damping = damping * 0.02 < least_damping ? 0 : damping * 0.02;
             const double scale_there = robust_ ? scale_of(p_.distance) : scale;
-            plateau = gain <= 1e-9 * current && scale_there > 0.999 * scale ? plateau + 1 : 0;
+            const bool steady = !robust_ || scale_there > 0.99 * scale;
+            plateau = !steady || gain > 1e-4 * current ? 0 : plateau + (gain <= 1e-9 * current ? 2 : 1);
+            falling = robust_ ? scale_there < 0.7 * scale : gain > 0.3 * current;
             scale = scale_there;
             current = robust_ ? cost(p_.distance, scale) : cost_there;
             double longest = 0;
             for (double v : step) longest = std::max(longest, std::abs(v));
-            if (plateau >= 2 || longest < 1e-15 || !(current > 0)) break;
+            if (plateau >= 4 || longest < 1e-15 || !(current > 0)) break;
             if (hopeless > 0 && accepted == hopeless_after &&
                 median_magnitude(p_.distance, p_.size(), p_.sorted) > hopeless)
                 break;
