@@ -27,7 +27,7 @@ constexpr double least_progress = 1e-3;
 constexpr double teleport_share = 0.5;
 /// A merge that costs more than this share of what the last insertion saved would have to be paid back.
 constexpr double worthwhile_share = 0.5;
-/// A teleportation is tried with as many different seeds.
+/// A teleportation is tried against the surface of the region that it splits, then with that region starting over.
 constexpr std::size_t teleport_attempts = 2;
 constexpr std::size_t teleport_regions_considered = 16;
 /// Iterations of a Lloyd run after which a teleportation that is still worse by this factor is given up.
@@ -217,7 +217,7 @@ class PaperFlow {
         std::uint32_t split = 0;
         bool merge_first = false;
         partition::RegionPair merge;
-        int rounds = 0;
+        bool restart = false;
         Stamps stamps{};  ///< of the region to split and of the pair: no region has stamp 0
     };
 
@@ -248,13 +248,13 @@ class PaperFlow {
                 const double gain = teleport_share * state.fits[r].total - c.increase;
                 if (!(gain > best_gain) || attempts(stamps) >= teleport_attempts) continue;
                 best_gain = gain;
-                best = Teleportation{r, true, c.pair, smoothing_rounds[attempts(stamps)], stamps};
+                best = Teleportation{r, true, c.pair, attempts(stamps) > 0, stamps};
             }
         }
         for (const std::uint32_t r : costly) {
             const Stamps stamps{state.stamps[r], 0, 0};
             if (best || attempts(stamps) >= teleport_attempts) continue;
-            best = Teleportation{r, false, {}, smoothing_rounds[attempts(stamps)], stamps};
+            best = Teleportation{r, false, {}, attempts(stamps) > 0, stamps};
         }
         return best;
     }
@@ -265,14 +265,14 @@ class PaperFlow {
         const std::uint32_t split = move.split == last ? move.merge.b : move.split;
         const double before = loop_.state().energy;
         loop_.merge(move.merge.a, move.merge.b);
-        const auto face = loop_.face_to_split(split, move.rounds);
-        if (!face || !loop_.insert(*face)) return false;
+        const auto face = loop_.face_to_split(split);
+        if (!face || !loop_.insert(*face, move.restart)) return false;
         return settle(before, false);
     }
     bool insert_and_merge(const Teleportation& move) {
         const double before = loop_.state().energy;
-        const auto face = loop_.face_to_split(move.split, move.rounds);
-        if (!face || !loop_.insert(*face)) return false;
+        const auto face = loop_.face_to_split(move.split);
+        if (!face || !loop_.insert(*face, move.restart)) return false;
         loop_.lloyd(paper_.lloyd_iterations, FloodScope::affected, false);
         const auto candidates = loop_.merge_candidates();
         if (candidates.empty() || !candidates[0].valid) return false;

@@ -304,12 +304,26 @@ std::vector<std::uint32_t> VariationalLoop::regions_to_split() const {
     return partition::farthest_regions(regions);
 }
 
-bool VariationalLoop::insert(std::uint32_t face) {
+bool VariationalLoop::insert(std::uint32_t face, bool restart) {
     const auto r = static_cast<std::size_t>(state_.labels[face]);
     if (faces_[r].size() < 2) return false;
     if (state_.seeds[r] == face) state_.seeds[r] = partition::best_face(mesh_, faces_[r], state_.density, face);
     quadric::RegionFit plane;
     plane.proxy = quadric::plane_proxy(mesh_.centroid(face), mesh_.normals[face]);
+    if (restart) {
+        const auto measure = [&](const quadric::Proxy& proxy) {
+            for (const std::uint32_t f : faces_[r]) {
+                state_.density[f] = partition::error_density(mesh_, f, proxy, policy_.metric);
+            }
+        };
+        measure(plane.proxy);
+        if (const auto other = partition::worst_face(mesh_, faces_[r], state_.density, face)) {
+            state_.seeds[r] = *other;
+            state_.fits[r].proxy = quadric::plane_proxy(mesh_.centroid(*other), mesh_.normals[*other]);
+        }
+        measure(state_.fits[r].proxy);
+        new_faces_[r] = 1;
+    }
     state_.fits.push_back(plane);
     state_.seeds.push_back(face);
     state_.stamps.push_back(next_stamp_++);

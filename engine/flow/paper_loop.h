@@ -62,8 +62,9 @@ class VariationalLoop {
     /// Regions in the order in which they are to be split: invalid ones first, then by falling error density.
     std::vector<std::uint32_t> regions_to_split() const;
     /// New region with the plane of `face` as its proxy; it has no faces until the next Lloyd run. False when the
-    /// face's region has no other face.
-    bool insert(std::uint32_t face);
+    /// face's region has no other face. With `restart` the split region starts over too, from the plane of its face
+    /// that fits the new plane worst: both halves are then free of the old common surface.
+    bool insert(std::uint32_t face, bool restart = false);
     /// Face where the region is worst: the paper's rule, or of densities smoothed `rounds` times. None: no face but the
     /// seed.
     std::optional<std::uint32_t> face_to_split(std::uint32_t region, int rounds = 0) const;
