@@ -138,10 +138,14 @@ class Builder {
                 }
                 // The middle stays: it is the apex of a cone, the pole of a dome.
                 const bool middle = 2 * i == nx && 2 * j == ny;
-                const double du = irregular && !middle ? jitter() : 0;
-                const double dv = irregular && !middle ? jitter() : 0;
-                current[i] = add_vertex(point(2 * (static_cast<double>(i) + du) / static_cast<double>(nx) - 1,
-                                              2 * (static_cast<double>(j) + dv) / static_cast<double>(ny) - 1));
+                const double u = 2 * static_cast<double>(i) / static_cast<double>(nx) - 1;
+                const double v = 2 * static_cast<double>(j) / static_cast<double>(ny) - 1;
+                // In the corners a loop that goes straight on leaves no room.
+                const double room = irregular && !middle ? 1 - std::abs(u * v) : 0;
+                const double du = room * jitter();
+                const double dv = room * jitter();
+                current[i] =
+                    add_vertex(point(u + 2 * du / static_cast<double>(nx), v + 2 * dv / static_cast<double>(ny)));
             }
             const bool outer_row = j == 1 || j == ny;
             for (std::size_t i = 0; i < nx; ++i) {
