@@ -30,9 +30,16 @@ function(quadseg_room name folder)
     endif()
     add_library(quadseg_room_${name} OBJECT ${sources})
     set_target_properties(quadseg_room_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    # The headers carry no export marks: a shared library shows its names.
-    if(NOT BUILD_SHARED_LIBS)
-        set_target_properties(quadseg_room_${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-    endif()
+    # Public headers mark what is shown (export.h).
+    set_target_properties(quadseg_room_${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
     target_link_libraries(quadseg_room_${name} PRIVATE quadseg_settings ${ARG_LINK})
+endfunction()
+
+# A shared library or module made of rooms shows quadseg's marked names only.
+function(quadseg_hide_foreign_symbols target)
+    if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND NOT QUADSEG_SANITIZE)
+        set(map ${PROJECT_SOURCE_DIR}/tools/cmake/public_symbols.map)
+        target_link_options(${target} PRIVATE -Wl,--version-script=${map})
+        set_target_properties(${target} PROPERTIES LINK_DEPENDS ${map})
+    endif()
 endfunction()
