@@ -23,6 +23,10 @@ constexpr std::size_t faces_per_coarse_face = 10;
 constexpr double useful_share = 0.7;
 /// A part of a projected region of this share of its main part is no fringe of jagged faces: a region of its own.
 constexpr double independent_share = 0.9;
+/// Of the regions brought to the fine mesh a tenth, one at least, are too many: the last merges see the true energies.
+constexpr std::size_t regions_per_spare = 10;
+/// Teleportations on the fine mesh, each as dear as many on the simplified one.
+constexpr int fine_teleportations = 4;
 /// Regions on the simplified mesh before merging, for one that is wanted: 1 traps the loop in what insertion found, 2
 /// takes twice as long and ends no lower.
 constexpr double regions_overshoot = 1.5;
@@ -198,7 +202,8 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
     more.regions = static_cast<std::size_t>(regions_overshoot * static_cast<double>(input.options.regions));
     FlowResult many = run_paper({input.mesh, input.features, more, input.control});
     if (many.partial) return many;
-    FlowResult result = run_paper(input, &many.labels);
+    more.regions = input.options.regions + std::max<std::size_t>(1, input.options.regions / regions_per_spare);
+    FlowResult result = run_paper({input.mesh, input.features, more, input.control}, &many.labels);
     result.energies.insert(result.energies.begin(), many.energies.begin(), many.energies.end());
     return result;
 }
@@ -208,7 +213,11 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
 FlowResult run_paper_coarse(const FlowInput& input, std::size_t coarse_faces) {
     if (input.options.method == Method::hierarchical) return run_paper(input);  // merges from single faces up
     return run_coarse(input, coarse_faces, overshoot_and_merge,
-                      [](const FlowInput& fine, const partition::Labels& labels) { return run_paper(fine, &labels); });
+                      [](const FlowInput& fine, const partition::Labels& labels) {
+                          Options fewer = fine.options;
+                          fewer.paper.teleportations = std::min(fine_teleportations, fewer.paper.teleportations);
+                          return run_paper({fine.mesh, fine.features, fewer, fine.control}, &labels);
+                      });
 }
 
 }  // namespace quadseg::flow

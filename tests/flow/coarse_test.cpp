@@ -1,0 +1,183 @@
+#include "flow/coarse.h"
+
+#include "flow/paper.h"
+#include "flow/paper_loop.h"
+#include "flow/project_labels.h"
+#include "runtime/parallel.h"
+#include "tests/flow/loop_support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <optional>
+#include <set>
+
+namespace quadseg::test {
+namespace {
+
+using flow::FlowInput;
+using flow::FlowResult;
+using partition::Labels;
+
+/// What a flow owes, made by hand: the six sides of a box told apart by their normals.
+FlowResult by_normal(const FlowInput& input) {
+    FlowResult result;
+    for (const Vec3& n : input.mesh.normals) {
+        const int axis = std::abs(n.x) > 0.7 ? 0 : std::abs(n.y) > 0.7 ? 1 : 2;
+        result.labels.push_back(2 * axis + (n[axis] > 0 ? 1 : 0));
+    }
+    result.regions = partition::compact(result.labels);
+    return result;
+}
+
+FlowResult as_projected(const FlowInput&, const Labels& labels) {
+    FlowResult result;
+    result.labels = labels;
+    result.regions = partition::compact(result.labels);
+    return result;
+}
+
+TEST(Coarse, SidesOfABoxComeBackExactly) {
+    const mesh::WorkMesh mesh = work_mesh(box(24));
+    const Options options;
+    const runtime::RunControl control(nullptr);
+    const FlowInput input{mesh, nullptr, options, control};
+    std::size_t coarse_faces = 0;
+    const FlowResult result = flow::run_coarse(
+        input, 200,
+        [&](const FlowInput& coarse) {
+            coarse_faces = coarse.mesh.face_count();
+            EXPECT_NEAR(coarse.mesh.total_area, mesh.total_area, 1e-6);
+            EXPECT_EQ(coarse.mesh.frame.scale, mesh.frame.scale);
+            return by_normal(coarse);
+        },
+        as_projected);
+    EXPECT_LE(coarse_faces, 200U);
+    Labels expected = by_normal(input).labels;
+    EXPECT_EQ(result.regions, 6U);
+    EXPECT_EQ(result.labels, expected);
+}
+
+TEST(Coarse, FeaturesComeAlongToTheSimplifiedMesh) {
+    const mesh::WorkMesh mesh = work_mesh(box(24));
+    Options options;
+    options.feature_angle = 30;
+    const runtime::RunControl control(nullptr);
+    const mesh::FeatureEdges features = mesh::find_feature_edges(mesh, 30, control);
+    std::size_t groups = 0;
+    flow::run_coarse(
+        {mesh, &features, options, control}, 200,
+        [&](const FlowInput& coarse) {
+            EXPECT_NE(coarse.features, nullptr);
+            if (coarse.features != nullptr) mesh::feature_groups(coarse.mesh, *coarse.features, groups);
+            return by_normal(coarse);
+        },
+        as_projected);
+    EXPECT_EQ(groups, 6U);
+}
+
+TEST(Coarse, MeshThatCannotBeSimplifiedIsSegmentedAsItIs) {
+    const mesh::WorkMesh mesh = work_mesh(box(1));
+    const Options options;
+    const runtime::RunControl control(nullptr);
+    bool refined = false;
+    const FlowResult result = flow::run_coarse(
+        {mesh, nullptr, options, control}, 1,
+        [&](const FlowInput& given) {
+            EXPECT_EQ(given.mesh.face_count(), mesh.face_count());
+            return by_normal(given);
+        },
+        [&](const FlowInput& given, const Labels& labels) {
+            refined = true;
+            return as_projected(given, labels);
+        });
+    EXPECT_FALSE(refined);
+    EXPECT_EQ(result.labels.size(), mesh.face_count());
+}
+
+TEST(Coarse, CancelledRunReturnsALabelForEveryFace) {
+    const mesh::WorkMesh mesh = work_mesh(box(24));
+    Options options = paper_options(6);
+    Context context;
+    context.cancel();
+    const runtime::RunControl control(&context);
+    const FlowResult result = flow::run_paper_coarse({mesh, nullptr, options, control}, 200);
+    EXPECT_TRUE(result.partial);
+    ASSERT_EQ(result.labels.size(), mesh.face_count());
+    EXPECT_GE(*std::min_element(result.labels.begin(), result.labels.end()), 0);
+}
+
+TEST(Coarse, PaperLoopEndsNoHigherThanWithout) {
+    const mesh::WorkMesh mesh = work_mesh(dome_on_plate(64, 24));
+    const Options options = paper_options(2);
+    const runtime::RunControl control(nullptr);
+    const FlowInput input{mesh, nullptr, options, control};
+    const auto energy = [&](const FlowResult& result) {
+        flow::VariationalLoop loop(input);
+        loop.start_from_labels(result.labels);
+        return loop.state().energy;
+    };
+    const FlowResult plain = flow::run_paper(input), coarse = flow::run_paper_coarse(input, 1000);
+    EXPECT_EQ(coarse.regions, 2U);
+    EXPECT_LE(energy(coarse), 1.02 * energy(plain));
+}
+
+TEST(Coarse, SameLabelsAtAnyThreadCount) {
+    const mesh::WorkMesh mesh = work_mesh(dome_on_plate(64, 24));
+    const Options options = paper_options(4);
+    const runtime::RunControl control(nullptr);
+    const FlowInput input{mesh, nullptr, options, control};
+    std::optional<Labels> reference;
+    for (const int threads : {1, 2, 8}) {
+        FlowResult result;
+        runtime::in_arena(threads, [&] { result = flow::run_paper_coarse(input, 1000); });
+        if (!reference) reference = result.labels;
+        EXPECT_EQ(result.labels, *reference) << threads;
+    }
+}
+
+TEST(Coarse, AutomaticChoice) {
+    Options options = paper_options();
+    options.coarse = -1;
+    EXPECT_EQ(flow::coarse_face_count(options, 9999), 0U);
+    EXPECT_EQ(flow::coarse_face_count(options, 10000), 1000U);
+    EXPECT_EQ(flow::coarse_face_count(options, 200000), 20000U);
+    options.preset = Preset::standard;
+    EXPECT_EQ(flow::coarse_face_count(options, 200000), 0U);
+    options.coarse = 500;
+    EXPECT_EQ(flow::coarse_face_count(options, 200000), 500U);
+    EXPECT_EQ(flow::coarse_face_count(options, 400), 0U);
+    options.coarse = 0;
+    EXPECT_EQ(flow::coarse_face_count(options, 200000), 0U);
+}
+
+TEST(ConnectLabels, OrphansAndGapsJoinTheirNeighbours) {
+    const mesh::WorkMesh mesh = work_mesh(box(12));
+    const partition::Passage passage{&mesh, nullptr, {}};
+    const runtime::RunControl control(nullptr);
+    const Options options;
+    const Labels sides = by_normal({mesh, nullptr, options, control}).labels;
+    Labels labels = sides;
+    // Lone faces of a foreign label and of none, inside sides.
+    std::size_t changed = 0;
+    for (std::size_t f = 0; f < labels.size(); f += 97) {
+        const auto inner = [&](std::size_t k) {
+            const std::int32_t g = mesh.neighbors[f][k];
+            return g >= 0 && labels[static_cast<std::size_t>(g)] == sides[f];
+        };
+        if (!inner(0) || !inner(1) || !inner(2)) continue;
+        labels[f] = changed++ % 2 == 0 ? (sides[f] + 2) % 6 : -1;
+    }
+    ASSERT_GT(changed, 4U);
+    EXPECT_EQ(flow::connect_labels(passage, labels, 0.25, control), 6U);
+    EXPECT_EQ(labels, sides);
+    // A label of two equal parts becomes two regions; no label at all becomes one.
+    Labels halves = sides;
+    for (std::int32_t& label : halves) label /= 2;
+    EXPECT_EQ(flow::connect_labels(passage, halves, 0.25, control), 6U);
+    Labels none(mesh.face_count(), -1);
+    EXPECT_EQ(flow::connect_labels(passage, none, 0.25, control), 1U);
+}
+
+}  // namespace
+}  // namespace quadseg::test
