@@ -68,11 +68,11 @@ class Selector {
     void demote() {
         const double s0 = std::max(result_.noise, 1e-11 * scene_.tolerances.diagonal);
         const double limit = std::max(30 * s0, scene_.tolerances.fit);
-        trusted_ = std::max({3 * s0, 1e-9 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision});
+        const double trusted = std::max({3 * s0, 1e-9 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision});
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& k = candidates_[c];
-            const bool accidental = (k.median > limit && k.gap > 0.25) || (k.median > 10 * limit && k.gap > 0.1) ||
-                                    (k.gap > 0.35 && k.median > 3 * s0) || k.median > 20 * limit;
+            const bool accidental = (k.median > limit && k.gap > 0.3) || (k.median > 10 * limit && k.gap > 0.1) ||
+                                    (k.gap > 0.35 && k.median > trusted) || (k.median > 20 * limit && k.gap > 0.05);
             if (accidental && k.surface.type != SurfaceType::plane) alive_[c] = 0;
         }
     }
@@ -99,7 +99,8 @@ class Selector {
                 const double angle = std::isinf(fit.allowed) ? 0 : 2 * fit.angle / fit.allowed;
                 const double unit = std::max(2e-7 * scene_.tolerances.diagonal, 4 * scene_.tolerances.precision);
                 // Of two surfaces through the same vertices the one that turns less between them is meant.
-                const double turn = 3 * std::log2(std::max(1.0, fit.step / largest_step_));
+                const double turn =
+                    3 * std::log2(std::max({1.0, fit.step / largest_step_, candidate.step / largest_step_}));
                 claims_[c].push_back(flat_cut ? -1.0F
                                               : static_cast<float>(std::log2(1 + fit.distance / unit) + angle + turn));
             }
@@ -140,7 +141,6 @@ class Selector {
     double largest_step_;
     std::vector<std::uint32_t> by_area_;
     std::vector<std::uint8_t> alive_;
-    double trusted_ = 0;  ///< median distance up to which a fit is no accident
     std::vector<std::vector<float>> claims_;
     Selection result_;
 };
