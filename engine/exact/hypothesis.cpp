@@ -227,7 +227,10 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     const PatchPoints p = patch_points(scene, faces, marks);
     std::optional<Surface> best;
     double best_cost = 0;
-    const surface::FitOptions options{20, true, tolerance / 10};
+    surface::FitOptions options;
+    options.iterations = 20;
+    options.minimum_scale = tolerance / 1000;
+    options.hopeless = 1000 * tolerance;
     for (const SurfaceType type : types) {
         if (p.points.size() < static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 3) continue;
         for (const std::vector<Vec3>* normals : {&p.jet_normals, &p.face_normals}) {

@@ -9,6 +9,10 @@ namespace quadseg::exact {
 namespace {
 
 constexpr int most_digits = 15;
+/// Fewer digits than this are round numbers that a modeller typed (a unit cube), not the rounding of a file.
+constexpr int least_digits = 5;
+/// Relative to the largest extent; coarser files are no longer clean meshes.
+constexpr double worst_precision = 2e-6;
 
 /// Smallest number of significant decimal digits that represents x up to the rounding of the unit frame's round trip.
 int significant_digits(double x, double slack) {
@@ -56,10 +60,10 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
     }
     // Full doubles show most_digits; a text file shows the digits that it was printed with.
     const double most = quantile(digits, 0.9);
-    if (most < most_digits - 1) {
+    if (most >= least_digits && most < most_digits - 1) {
         precision = std::max(precision, 0.29 * quantile(quanta, 0.5) * std::pow(10.0, 1 - most));
     }
-    return precision * mesh.frame.scale;
+    return std::min(precision * mesh.frame.scale, worst_precision);
 }
 
 Tolerances choose_tolerances(const mesh::WorkMesh& mesh) {
