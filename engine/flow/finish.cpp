@@ -1,109 +1,109 @@
 #include "flow/finish.h"
 
+#include "flow/final_surfaces.h"
+#include "flow/polygons.h"
+#include "flow/project.h"
 #include "flow/quality.h"
+#include "flow/regularities_report.h"
+#include "flow/smooth_borders.h"
+#include "partition/border_measure.h"
 #include "surface/surface.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace quadseg::flow {
 
 namespace {
 
-/// Triangles of one polygon of the file share the label that covers most of its area (the smaller label on a tie).
-void unify_polygons(const mesh::WorkMesh& mesh, FlowResult& flow) {
-    if (mesh.polygon.empty()) return;
-    std::vector<std::vector<std::uint32_t>> members;
-    std::map<std::int32_t, std::size_t> slot;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        const auto [entry, fresh] = slot.emplace(mesh.polygon[f], members.size());
-        if (fresh) members.emplace_back();
-        members[entry->second].push_back(static_cast<std::uint32_t>(f));
-    }
-    bool changed = false;
-    for (const auto& faces : members) {
-        std::map<std::int32_t, double> area;
-        for (const std::uint32_t f : faces) area[flow.labels[f]] += mesh.areas[f];
-        if (area.size() < 2) continue;
-        const auto best = std::max_element(area.begin(), area.end(),
-                                           [](const auto& a, const auto& b) { return a.second < b.second; });
-        for (const std::uint32_t f : faces) flow.labels[f] = best->first;
-        changed = true;
-    }
-    if (!changed) return;
-    partition::split_disconnected(mesh, flow.labels);
-    flow.surfaces.clear();
-    flow.regions = partition::compact(flow.labels);
+void scale(Quadric& c, double factor) {
+    for (double& v : c) v *= factor;
 }
 
-/// Coefficients of a proxy of the unit frame in the input's coordinates, mean gradient 1.
-Quadric input_coefficients(const mesh::UnitFrame& frame, const quadric::Proxy& proxy) {
-    Quadric c = quadric::from_local(proxy.c, frame.centre + proxy.origin / frame.scale, frame.scale);
-    for (double& x : c) x /= frame.scale;
-    return c;
-}
-
-Surface surface_of_proxy(const quadric::Proxy& proxy, const quadric::Coefficients& unit, const Vec3& near,
-                         double radius) {
-    Surface s = surface::classify(unit, near, radius);
-    s.coefficients = unit;
-    (void)proxy;
+/// In input coordinates; coefficients with a mean |∇f(c_t)| of 1 over the region.
+Surface input_surface(const mesh::UnitFrame& frame, const FinalSurface& final, const RegionQuality& quality) {
+    Surface s = surface::transformed_back(final.surface, frame.centre, frame.scale);
+    double gradient = quality.area > 0 ? quality.gradient / quality.area : 1;
+    if (s.type <= SurfaceType::cone) {
+        s.coefficients = surface::to_coefficients(s);
+        if (s.type == SurfaceType::cone) gradient /= frame.scale;  // a length: the distance from the apex
+    } else {
+        // From the region's own frame straight to the input's: nothing is lost on the way.
+        s.coefficients = quadric::from_local(final.quadric.c, frame.to_input(final.quadric.origin), frame.scale);
+        scale(s.coefficients, 1 / frame.scale);
+    }
+    if (gradient > 0 && std::isfinite(gradient)) scale(s.coefficients, 1 / gradient);
     return s;
+}
+
+Region describe_region(const mesh::WorkMesh& mesh, std::size_t r, const partition::RegionFaces& regions,
+                       const FinalSurface& final, const RegionQuality& quality, double weight) {
+    const double diagonal = mesh.frame.diagonal, area = std::max(quality.area, 1e-300);
+    Region region;
+    region.id = static_cast<std::int32_t>(r);
+    region.surface = input_surface(mesh.frame, final, quality);
+    region.faces = regions.size(r);
+    region.area = quality.area / (mesh.frame.scale * mesh.frame.scale);
+    region.rms = std::sqrt(quality.squared_distance / area) / diagonal;
+    region.max = quality.max_distance / diagonal;
+    region.energy = quality.energy.hybrid(weight);
+    region.surface_id = region.id;
+    region.valid = final.one_sheet && quality.against <= 0.01 * quality.area;
+    return region;
+}
+
+std::vector<double> areas_of(const std::vector<RegionQuality>& quality) {
+    std::vector<double> areas(quality.size());
+    for (std::size_t r = 0; r < areas.size(); ++r) areas[r] = quality[r].area;
+    return areas;
+}
+
+/// Section 4.4.1, and the surfaces refitted after.
+void smooth(const FlowInput& input, FlowResult& flow, partition::RegionFaces& regions,
+            std::vector<FinalSurface>& surfaces, Segmentation& result) {
+    result.borders_before = partition::measure_borders(input.mesh, flow.labels);
+    if (smooth_borders(input, flow, regions, surfaces)) {
+        regions = partition::region_faces(flow.labels, flow.regions);
+        surfaces = final_surfaces(input, regions, flow);
+    }
+    result.borders_after = partition::measure_borders(input.mesh, flow.labels);
 }
 
 }  // namespace
 
 Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     const mesh::WorkMesh& mesh = input.mesh;
-    unify_polygons(mesh, flow);
-    const partition::RegionFaces regions = partition::region_faces(flow.labels, flow.regions);
-    quadric::RegionFitOptions fit_options;
-    fit_options.weight = input.options.weight;
-    const runtime::RunControl unstoppable(nullptr);
-    const auto fits = partition::fit_regions(mesh, regions, fit_options, unstoppable);
-
-    std::vector<Surface> surfaces(flow.regions);
-    for (std::size_t r = 0; r < flow.regions; ++r) {
-        const quadric::Proxy& proxy = fits[r].proxy;
-        const quadric::Coefficients unit = quadric::from_local(proxy.c, proxy.origin, 1);
-        if (r < flow.surfaces.size() && flow.surfaces[r].type != SurfaceType::freeform) {
-            surfaces[r] = flow.surfaces[r];
-        } else {
-            surfaces[r] = surface_of_proxy(proxy, unit, proxy.origin, 1);
-        }
-        if (surfaces[r].type == SurfaceType::torus) surfaces[r].coefficients = unit;
-    }
-    const auto quality = measure_quality(mesh, regions, surfaces);
-
+    const Options& options = input.options;
     Segmentation result;
-    const double diagonal = mesh.frame.diagonal;
+    unify_polygons(mesh, flow);
+    partition::RegionFaces regions = partition::region_faces(flow.labels, flow.regions);
+    std::vector<FinalSurface> surfaces = final_surfaces(input, regions, flow);
+    const bool whole = !flow.partial && !input.control.should_stop();
+    if (options.smooth && whole) smooth(input, flow, regions, surfaces, result);
+
+    std::vector<RegionQuality> quality = measure_quality(mesh, regions, surfaces);
+    std::vector<std::int32_t> ids;
+    if (options.regularities && options.preset == Preset::standard && whole) {
+        result.regularities = snap_regularities(surfaces, areas_of(quality), flow.noise);
+        if (!result.regularities.empty()) quality = measure_quality(mesh, regions, surfaces);
+    }
+    ids = analytic_surface_ids(surfaces, flow.noise);
+
     double squared = 0;
     for (std::size_t r = 0; r < flow.regions; ++r) {
-        Region region;
-        region.id = static_cast<std::int32_t>(r);
-        region.surface = surface::transformed_back(surfaces[r], mesh.frame.centre, mesh.frame.scale);
-        if (r >= flow.surfaces.size() || flow.surfaces[r].type == SurfaceType::freeform) {
-            region.surface.coefficients = input_coefficients(mesh.frame, fits[r].proxy);
-        }
-        region.faces = regions.size(r);
-        region.area = quality[r].area / (mesh.frame.scale * mesh.frame.scale);
-        region.rms = std::sqrt(quality[r].squared_distance / std::max(quality[r].area, 1e-300)) / diagonal;
-        region.max = quality[r].max_distance / diagonal;
-        region.energy = fits[r].total;
-        region.surface_id = region.id;
-        region.valid = fits[r].valid;
-        result.energy.distance += fits[r].energy.distance;
-        result.energy.normal += fits[r].energy.normal;
+        Region region = describe_region(mesh, r, regions, surfaces[r], quality[r], options.weight);
+        region.surface_id = ids[r];
+        result.energy.distance += quality[r].energy.distance;
+        result.energy.normal += quality[r].energy.normal;
         squared += quality[r].squared_distance;
         result.max = std::max(result.max, region.max);
         result.regions.push_back(region);
     }
-    result.energy.total = result.energy.distance + input.options.weight * result.energy.normal;
-    result.rms = std::sqrt(squared / std::max(mesh.total_area, 1e-300)) / diagonal;
+    result.energy.total = result.energy.distance + options.weight * result.energy.normal;
+    result.rms = std::sqrt(squared / std::max(mesh.total_area, 1e-300)) / mesh.frame.diagonal;
     result.stop = flow.stop;
     result.partial = flow.partial;
-    result.noise = flow.noise / diagonal;
+    result.noise = flow.noise / mesh.frame.diagonal;
     result.input = mesh.report;
     result.history = std::move(flow.history);
     result.energies = std::move(flow.energies);
@@ -111,6 +111,7 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     for (std::size_t f = 0; f < result.labels.size(); ++f) {
         if (result.labels[f] < 0) result.unlabelled.push_back(static_cast<std::uint32_t>(f));
     }
+    if (options.project && whole) result.projected = projected_positions(input, flow.labels, surfaces);
     return result;
 }
 

@@ -1,10 +1,12 @@
 #include "flow/quality.h"
 
+#include "partition/face_metric.h"
 #include "runtime/parallel.h"
-#include "surface/surface.h"
+#include "surface/evaluate.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace quadseg::flow {
 
@@ -14,53 +16,86 @@ struct Block {
     std::uint32_t region, begin, end;
 };
 
-bool has_closed_form(SurfaceType type) {
-    return type == SurfaceType::plane || type == SurfaceType::sphere || type == SurfaceType::cylinder ||
-           type == SurfaceType::cone || type == SurfaceType::torus;
+using Faces = std::pair<const std::uint32_t*, const std::uint32_t*>;
+
+/// Closed forms: cheaper to evaluate at every corner than to find the corners that meet.
+template <class Evaluator>
+void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const Evaluator& evaluator, RegionQuality& q) {
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+        double sum = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double d = std::abs(evaluator.distance(mesh.corner(*f, k)));
+            sum += d * d;
+            q.max_distance = std::max(q.max_distance, d);
+        }
+        q.squared_distance += sum * mesh.areas[*f] / 3;
+    }
 }
 
-RegionQuality measure_block(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count,
-                            const Surface& s) {
-    // Corners meet several times; general quadrics, whose foot points are dear, are evaluated once a vertex.
-    RegionQuality q;
-    if (has_closed_form(s.type)) {
-        for (std::size_t i = 0; i < count; ++i) {
-            double sum = 0;
-            for (int k = 0; k < 3; ++k) {
-                const double d = std::abs(surface::signed_distance(s, mesh.corner(faces[i], k)));
-                sum += d * d;
-                q.max_distance = std::max(q.max_distance, d);
-            }
-            q.area += mesh.areas[faces[i]];
-            q.squared_distance += sum * mesh.areas[faces[i]] / 3;
-        }
-        return q;
-    }
+/// General quadrics, whose foot points are dear, are evaluated once a vertex.
+void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const surface::QuadricEvaluator& evaluator,
+                   RegionQuality& q) {
     std::vector<std::pair<std::uint32_t, double>> weights;
-    weights.reserve(3 * count);
-    for (std::size_t i = 0; i < count; ++i) {
-        q.area += mesh.areas[faces[i]];
-        for (const std::uint32_t v : mesh.faces[faces[i]]) weights.emplace_back(v, mesh.areas[faces[i]] / 3);
+    weights.reserve(3 * static_cast<std::size_t>(faces.second - faces.first));
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+        for (const std::uint32_t v : mesh.faces[*f]) weights.emplace_back(v, mesh.areas[*f] / 3);
     }
     std::stable_sort(weights.begin(), weights.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    const surface::QuadricProjector projector(s.coefficients);
     for (std::size_t i = 0; i < weights.size();) {
-        const Vec3 p = mesh.positions[weights[i].first];
-        const double d = norm(p - projector.foot_point(p));
+        const std::uint32_t v = weights[i].first;
+        const double d = std::abs(evaluator.distance(mesh.positions[v]));
         double weight = 0;
-        for (const std::uint32_t v = weights[i].first; i < weights.size() && weights[i].first == v; ++i) {
-            weight += weights[i].second;
-        }
+        for (; i < weights.size() && weights[i].first == v; ++i) weight += weights[i].second;
         q.squared_distance += weight * d * d;
         q.max_distance = std::max(q.max_distance, d);
     }
-    return q;
+}
+
+/// Planes need no polynomials: ∫f² = |t|/12 (Σf_i² + (Σf_i)²), and the normals differ by a constant.
+void add_plane_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy, RegionQuality& q) {
+    const Vec3 n{proxy.c[1], proxy.c[2], proxy.c[3]};
+    const double length = norm(n), inverse = length > 0 ? 1 / length : 0;
+    const Vec3 unit = n * inverse;
+    const double offset = proxy.c[0] * inverse - dot(unit, proxy.origin);
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+        const double area = mesh.areas[*f];
+        q.area += area;
+        if (!(area > 0)) continue;
+        double sum = 0, squares = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double value = dot(unit, mesh.corner(*f, k)) + offset;
+            sum += value;
+            squares += value * value;
+        }
+        q.energy.distance += area / 12 * (squares + sum * sum);
+        q.energy.normal += area * squared_norm(unit - mesh.normals[*f]);
+        q.gradient += area * length;
+        if (!(dot(unit, mesh.normals[*f]) > 0)) q.against += area;
+    }
+}
+
+void add_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy, RegionQuality& q) {
+    if (proxy.planar()) {
+        add_plane_energy(mesh, faces, proxy, q);
+        return;
+    }
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+        const double area = mesh.areas[*f];
+        q.area += area;
+        if (!(area > 0)) continue;
+        const quadric::TriangleEnergy e = partition::face_energy(mesh, *f, proxy, true);
+        q.energy.distance += e.distance;
+        q.energy.normal += e.normal;
+        const Vec3 g = quadric::gradient(proxy.c, mesh.centroid(*f) - proxy.origin);
+        q.gradient += area * norm(g);
+        if (!(dot(g, mesh.normals[*f]) > 0)) q.against += area;
+    }
 }
 
 }  // namespace
 
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,
-                                           const std::vector<Surface>& surfaces) {
+                                           const std::vector<FinalSurface>& surfaces) {
     constexpr std::size_t block_faces = 8192;
     std::vector<Block> blocks;
     for (std::size_t r = 0; r < regions.count(); ++r) {
@@ -73,8 +108,17 @@ std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const par
     std::vector<RegionQuality> parts(blocks.size());
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t i) {
         const Block& block = blocks[i];
-        parts[i] =
-            measure_block(mesh, regions.face.data() + block.begin, block.end - block.begin, surfaces[block.region]);
+        const Faces faces(regions.face.data() + block.begin, regions.face.data() + block.end);
+        const FinalSurface& final = surfaces[block.region];
+        surface::SurfaceEvaluator(final.surface).visit([&](const auto& evaluator) {
+            add_distances(mesh, faces, evaluator, parts[i]);
+        });
+        add_energy(mesh, faces, final.quadric, parts[i]);
+        if (final.loop_proxy) {
+            RegionQuality loop;
+            add_energy(mesh, faces, *final.loop_proxy, loop);
+            parts[i].energy = loop.energy;
+        }
     });
     std::vector<RegionQuality> quality(regions.count());
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -82,6 +126,10 @@ std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const par
         q.area += parts[i].area;
         q.squared_distance += parts[i].squared_distance;
         q.max_distance = std::max(q.max_distance, parts[i].max_distance);
+        q.energy.distance += parts[i].energy.distance;
+        q.energy.normal += parts[i].energy.normal;
+        q.gradient += parts[i].gradient;
+        q.against += parts[i].against;
     }
     return quality;
 }

@@ -1,7 +1,9 @@
-// How far the vertices of regions lie from their surfaces.
+// How far the vertices of regions lie from their surfaces, and the energy of their proxies.
 #pragma once
 
+#include "flow/final_surfaces.h"
 #include "flow/flow.h"
+#include "quadric/energy.h"
 
 #include <vector>
 
@@ -11,10 +13,13 @@ struct RegionQuality {
     double area = 0;              ///< unit frame
     double squared_distance = 0;  ///< ∫ d² by vertices: a third of each face's area at each corner
     double max_distance = 0;
+    quadric::TriangleEnergy energy;  ///< of the loop's proxy where there is one, else of the quadric
+    double gradient = 0;             ///< ∫ |∇f(c_t)| of the quadric
+    double against = 0;              ///< area where n·∇f(c_t) ≤ 0
 };
 
-/// `surfaces`: one a region, unit frame. Exact distances; O(F) evaluations, parallel over blocks of faces.
+/// Exact distances; O(F) evaluations, parallel over blocks of faces.
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,
-                                           const std::vector<Surface>& surfaces);
+                                           const std::vector<FinalSurface>& surfaces);
 
 }  // namespace quadseg::flow

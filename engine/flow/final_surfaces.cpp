@@ -1,0 +1,361 @@
+#include "flow/final_surfaces.h"
+
+#include "flow/methods.h"
+#include "flow/region_sample.h"
+#include "runtime/parallel.h"
+#include "surface/blend.h"
+#include "surface/constrained_fit.h"
+#include "surface/evaluate.h"
+#include "surface/fit.h"
+#include "surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace quadseg::flow {
+
+namespace {
+
+using surface::PointSet;
+using surface::SurfaceFit;
+
+constexpr std::size_t choice_points = 64;        ///< types are chosen on so many vertices …
+constexpr std::size_t refinement_points = 2000;  ///< … and refined on so many
+constexpr std::size_t general_points = 500;      ///< general quadrics, whose distances are dear
+constexpr std::size_t fit_faces = 16384;         ///< the default preset's quadric of a region is fitted to so many
+constexpr std::size_t kept_points = 24;
+/// RMS distance, in multiples of the better one, up to which a simpler type is not meaningfully worse.
+constexpr double equal_ratio = 1.5;
+/// The RMS distance of a good surface from noisy vertices is at most this multiple of the noise.
+constexpr double noise_margin = 1.5;
+/// Where vertices were found exact, what a surface may miss free-form vertices by: the exact stage's second pass.
+constexpr double exact_tolerance = 2e-7;
+/// Degrees by which the normals of a surface that explains a free-form patch may differ from the mesh's (RMS).
+constexpr double free_form_angle = 12;
+/// A refined quadric stands for the moments' one where it is so many times nearer to the vertices: then they lie on it,
+/// and the moments suffer from the facets' chords (MATH.md §3).
+constexpr double exact_quadric_gain = 5;
+
+double normal_deviation(const Surface& s, const PointSet& p) {
+    double sum = 0;
+    surface::SurfaceEvaluator(s).visit([&](const auto& e) {
+        for (std::size_t i = 0; i < p.points.size(); ++i) sum += squared_norm(e.normal(p.points[i]) - p.normals[i]);
+    });
+    return sum / static_cast<double>(std::max<std::size_t>(p.points.size(), 1));
+}
+
+/// Among equals the normals decide, at a price for freedom (PROTOTYPE_TRUTH.md §1.5).
+double preference(SurfaceType type) {
+    switch (type) {
+        case SurfaceType::plane:
+        case SurfaceType::cylinder:
+            return 1;
+        case SurfaceType::cone:
+            return 1.02;
+        case SurfaceType::sphere:
+            return 1.05;
+        case SurfaceType::torus:
+            return 1.15;
+        default:
+            return 1.3;
+    }
+}
+
+bool is_special(SurfaceType type) {
+    switch (type) {
+        case SurfaceType::elliptic_cylinder:
+        case SurfaceType::elliptic_cone:
+        case SurfaceType::elliptic_paraboloid:
+        case SurfaceType::hyperbolic_paraboloid:
+        case SurfaceType::parabolic_cylinder:
+        case SurfaceType::hyperbolic_cylinder:
+            return true;
+        default:
+            return false;
+    }
+}
+
+/// Chooses the type of one region's surface on a small sample.
+class TypeChoice {
+  public:
+    TypeChoice(const PointSet& p, const Surface& start, double floor) : p_(p), start_(start), floor_(floor) {
+        options_.iterations = 15;
+    }
+
+    /// The simplest type that is not meaningfully worse than the best; ok is false where nothing can be fitted.
+    SurfaceFit run() {
+        consider(surface::fit(SurfaceType::plane, p_, options_));
+        if (best_rms() <= floor_) return chosen();
+        consider_general();
+        // Types that stay far above what is reached already need no more than a few steps.
+        for (const SurfaceType type :
+             {SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone, SurfaceType::torus}) {
+            options_.hopeless = 2 * limit();
+            consider(surface::fit(type, p_, options_));
+        }
+        return chosen();
+    }
+
+    /// The same where the general quadric is known to fail: only a torus is left.
+    SurfaceFit torus(double tolerance) {
+        options_.hopeless = 2 * tolerance;
+        return surface::fit(SurfaceType::torus, p_, options_);
+    }
+
+  private:
+    double best_rms() const {
+        double best = std::numeric_limits<double>::infinity();
+        for (const SurfaceFit& fit : candidates_) best = std::min(best, fit.rms);
+        return best;
+    }
+    double limit() const { return std::max(floor_, equal_ratio * best_rms()); }
+    void consider(const SurfaceFit& fit) {
+        if (fit.ok && std::isfinite(fit.rms)) candidates_.push_back(fit);
+    }
+
+    /// The region's own quadric, its refinement on the vertices, and the member of the family that its eigenvalues
+    /// show.
+    void consider_general() {
+        const SurfaceFit own = surface::measure(start_, p_);
+        consider(own);
+        if (p_.points.size() < 10) return;
+        const SurfaceFit general = surface::fit_type(SurfaceType::quadric, p_, start_.coefficients, options_);
+        const bool exact = general.ok && general.rms * exact_quadric_gain < own.rms;
+        if (exact) consider(general);
+        const Surface& shown = exact ? general.surface : start_;
+        const Vec3 near = p_.points[p_.points.size() / 2];
+        double radius = 0;
+        for (const Vec3& x : p_.points) radius = std::max(radius, norm(x - near));
+        const SurfaceType family = surface::classify(shown.coefficients, near, radius, 0.02).type;
+        if (is_special(family)) consider(surface::fit_type(family, p_, shown.coefficients, options_));
+    }
+
+    SurfaceFit chosen() const {
+        const double most = limit();
+        const SurfaceFit* best = nullptr;
+        double best_score = 0;
+        for (const SurfaceFit& fit : candidates_) {
+            if (!(fit.rms <= most)) continue;
+            const double score = (normal_deviation(fit.surface, p_) + 1e-7) * preference(fit.surface.type);
+            if (best == nullptr || score < best_score) {
+                best = &fit;
+                best_score = score;
+            }
+        }
+        return best != nullptr ? *best : SurfaceFit{};
+    }
+
+    const PointSet p_;
+    const Surface& start_;
+    double floor_;
+    surface::FitOptions options_;
+    std::vector<SurfaceFit> candidates_;
+};
+
+class Finisher {
+  public:
+    Finisher(const FlowInput& input, const partition::RegionFaces& regions, const FlowResult& flow)
+        : mesh_(input.mesh),
+          options_(input.options),
+          regions_(regions),
+          flow_(flow),
+          paper_(options_.preset == Preset::paper) {
+        if (paper_) {
+            policy_ = method_policy(options_);
+        } else {
+            fit_options_.weight = options_.weight;
+            fit_options_.plane_tolerance = 1e-14;
+            fit_options_.plane_tolerance_per_area = true;
+        }
+    }
+
+    FinalSurface run(std::size_t r) const {
+        FinalSurface result;
+        const RegionSample sample = sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), refinement_points);
+        describe(sample, r, result);
+        const bool known = r < flow_.surfaces.size() && flow_.surfaces[r].type != SurfaceType::freeform;
+        if (known) {
+            keep_verified(flow_.surfaces[r], sample, result);
+            if (!quadric_of(result.surface, result.centroid, result.quadric)) fit_quadric(r, result);
+        } else {
+            fit_quadric(r, result);
+            if (paper_) result.loop_proxy = result.quadric;
+            choose(r, sample, result);
+        }
+        set_coefficients(result);
+        if (!sample.points.empty())
+            result.rms = surface::measure(result.surface, sample.thinned(general_points).all()).rms;
+        return result;
+    }
+
+  private:
+    const std::uint32_t* faces(std::size_t r) const { return regions_.face.data() + regions_.begin[r]; }
+
+    void describe(const RegionSample& sample, std::size_t r, FinalSurface& result) const {
+        result.evidence = sample.points.size();
+        const RegionSample few = sample.thinned(kept_points);
+        result.points = few.points;
+        if (sample.points.empty()) {
+            if (regions_.size(r) > 0) result.centroid = mesh_.centroid(*faces(r));
+            return;
+        }
+        for (const Vec3& p : sample.points) result.centroid += p;
+        result.centroid = result.centroid / static_cast<double>(sample.points.size());
+        double sum = 0;
+        for (const Vec3& p : sample.points) sum += squared_norm(p - result.centroid);
+        result.extent = std::sqrt(sum / static_cast<double>(sample.points.size()));
+    }
+
+    void keep_verified(const Surface& verified, const RegionSample& sample, FinalSurface& result) const {
+        result.surface = verified;
+        if (verified.type > SurfaceType::torus) return;
+        const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(verified.type));
+        if (sample.points.size() < 2 * freedom + 2) return;
+        const SurfaceFit before = surface::measure(verified, sample.all());
+        const SurfaceFit after = surface::refine(verified, sample.all());
+        // Border vertices may be off by far more than the others (trim curves): the middle and the bulk decide.
+        if (after.ok && after.median <= before.median && after.q90 <= 1.05 * before.q90) {
+            result.surface = after.surface;
+            result.surface.outward = verified.outward;
+        }
+    }
+
+    void fit_quadric(std::size_t r, FinalSurface& result) const {
+        const std::size_t size = regions_.size(r);
+        const std::size_t count = paper_ ? size : std::min(size, fit_faces);
+        std::vector<std::uint32_t> chosen(count);
+        for (std::size_t i = 0; i < count; ++i) chosen[i] = faces(r)[i * size / count];
+        partition::GatheredRegion soup;
+        partition::gather(mesh_, chosen.data(), count, soup);
+        const quadric::RegionFit fit =
+            paper_ ? policy_.fit(soup.soup()) : quadric::fit_region(soup.soup(), fit_options_);
+        result.quadric = fit.proxy;
+        result.one_sheet = fit.valid || quadric::is_valid(fit.proxy, soup.soup());
+    }
+
+    /// The proxy as a surface without a better name than its eigenvalues give.
+    Surface named(const FinalSurface& result) const {
+        const double radius = result.extent > 0 ? result.extent : 1;
+        // Named in the region's own frame, where nothing cancels.
+        Surface s = surface::classify(result.quadric.c, result.centroid - result.quadric.origin, radius);
+        s = surface::transformed_back(s, result.quadric.origin, 1);
+        s.coefficients = quadric::from_local(result.quadric.c, result.quadric.origin, 1);
+        return s;
+    }
+
+    void choose(std::size_t r, const RegionSample& sample, FinalSurface& result) const {
+        const Surface own = named(result);
+        result.surface = own;
+        if (paper_ && (options_.method != Method::quadric || result.quadric.planar())) return;
+        const bool free_form = !paper_ && r < flow_.surfaces.size();
+        const RegionSample few = sample.thinned(choice_points);
+        const double rounding = 1e-12 * result.extent;
+        const double floor = std::max(noise_margin * flow_.noise, rounding);
+        const double tolerance = free_form ? std::max(floor, exact_tolerance) : floor;
+        // The noise is known: what is farther off is free-form.
+        const bool judged = free_form || (!paper_ && flow_.noise > 0);
+        TypeChoice choice(few.all(), own, floor);
+        const bool general_fails = judged && fails(own, few, 2 * tolerance);
+        SurfaceFit fit = general_fails ? choice.torus(tolerance) : choice.run();
+        const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
+        const bool plane = fit.ok && fit.surface.type == SurfaceType::plane;
+        if (judged && (!fit.ok || !(fit.rms <= 2 * tolerance) ||
+                       (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few))))) {
+            describe_free_form(sample, result);
+            return;
+        }
+        if (fit.ok) refine_choice(fit.surface, sample, own, result);
+        (void)quadric_of(result.surface, result.centroid, result.quadric);
+    }
+
+    /// Neither the region's quadric nor its refinement on vertices comes near them.
+    static bool fails(const Surface& own, const RegionSample& few, double tolerance) {
+        if (few.points.size() < 10 || surface::measure(own, few.all()).rms <= tolerance) return false;
+        const SurfaceFit general = surface::fit_type(SurfaceType::quadric, few.all(), own.coefficients);
+        return !general.ok || !(general.rms <= tolerance);
+    }
+
+    static bool wrong_normals(const Surface& s, const RegionSample& sample) {
+        constexpr double limit = free_form_angle * 3.14159265358979 / 180;
+        return !(normal_deviation(s, sample.all()) <= limit * limit);
+    }
+
+    void describe_free_form(const RegionSample& sample, FinalSurface& result) const {
+        result.surface = {};
+        result.surface.type = SurfaceType::freeform;
+        result.surface.coefficients = quadric::from_local(result.quadric.c, result.quadric.origin, 1);
+        const RegionSample some = sample.thinned(choice_points);
+        if (some.points.size() < 12) return;
+        const surface::BlendFit blend = surface::fit_blend(some.all());
+        // A canal of one radius: the offset points draw a thin curve, every vertex shows the same radius, and the
+        // section turns enough to tell.
+        const bool explains = blend.ok && blend.radius > 0 && blend.radius < 2 * result.extent &&
+                              blend.spine_residual <= 0.02 * blend.radius && blend.radius_spread <= 0.02 &&
+                              blend.section_angle >= 0.05 && blend.spine_extent >= 0.5 * blend.radius;
+        if (!explains) return;
+        result.surface.type = SurfaceType::blend;
+        result.surface.radius = blend.radius;
+        result.surface.outward = blend.outward;
+    }
+
+    void refine_choice(const Surface& chosen, const RegionSample& sample, const Surface& own,
+                       FinalSurface& result) const {
+        result.surface = chosen;
+        if (chosen.type <= SurfaceType::torus) {
+            const SurfaceFit refined = surface::refine(chosen, sample.all());
+            if (refined.ok) result.surface = refined.surface;
+            return;
+        }
+        if (chosen.coefficients == own.coefficients || sample.points.size() <= choice_points) return;
+        const SurfaceFit refined =
+            surface::fit_type(chosen.type, sample.thinned(general_points).all(), chosen.coefficients);
+        if (refined.ok) result.surface = refined.surface;
+    }
+
+    static void set_coefficients(FinalSurface& result) {
+        const SurfaceType type = result.surface.type;
+        if (type <= SurfaceType::cone) {
+            result.surface.coefficients = surface::to_coefficients(result.surface);
+        } else if (type == SurfaceType::torus) {
+            result.surface.coefficients = quadric::from_local(result.quadric.c, result.quadric.origin, 1);
+        }
+    }
+
+    const mesh::WorkMesh& mesh_;
+    const Options& options_;
+    const partition::RegionFaces& regions_;
+    const FlowResult& flow_;
+    bool paper_;
+    MethodPolicy policy_;
+    quadric::RegionFitOptions fit_options_;
+};
+
+}  // namespace
+
+bool quadric_of(const Surface& s, const Vec3& origin, quadric::Proxy& proxy) {
+    if (s.type == SurfaceType::torus || s.type == SurfaceType::blend || s.type == SurfaceType::freeform) return false;
+    const Surface local = surface::transformed(s, origin, 1);
+    proxy.origin = origin;
+    proxy.c = local.type <= SurfaceType::cone ? surface::to_coefficients(local) : local.coefficients;
+    // 5 % of the region's |∇f|, which is 1 but for cones.
+    proxy.gradient_floor = s.type == SurfaceType::cone ? 0.05 * norm(origin - to_vec3(s.point)) : 0.05;
+    if (!(proxy.gradient_floor > 1e-6)) proxy.gradient_floor = 1e-6;
+    return true;
+}
+
+std::vector<FinalSurface> final_surfaces(const FlowInput& input, const partition::RegionFaces& regions,
+                                         const FlowResult& flow) {
+    const Finisher finisher(input, regions, flow);
+    std::vector<FinalSurface> result(regions.count());
+    // Large regions first: the last task to start should be a short one.
+    std::vector<std::uint32_t> order(regions.count());
+    for (std::size_t r = 0; r < order.size(); ++r) order[r] = static_cast<std::uint32_t>(r);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return regions.size(a) != regions.size(b) ? regions.size(a) > regions.size(b) : a < b;
+    });
+    runtime::parallel_for(order.size(), 1, [&](std::size_t i) { result[order[i]] = finisher.run(order[i]); });
+    return result;
+}
+
+}  // namespace quadseg::flow
