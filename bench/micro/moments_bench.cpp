@@ -1,4 +1,5 @@
 // Moments: one by one, on packs, streamed from the precomputed buffers; shifting and scaling. Time a face or a call.
+#include "bench/micro/machine.h"
 #include "bench/micro/shapes.h"
 #include "quadric/moment_buffers.h"
 #include "quadric/moments.h"
@@ -9,10 +10,17 @@
 namespace quadseg {
 namespace {
 
-void per_face(benchmark::State& state, std::size_t faces) {
+/// Corners, normal and area of a face.
+constexpr double face_bytes = 13 * sizeof(double);
+/// triangle_moments(): centroid 9, power sums 105, degrees 2 to 4 from them 60, three shifts of 35 multiply-adds 210.
+constexpr double triangle_operations = 384;
+/// Adding them with two weights: 35 and 12 multiply-adds, the six products of the normal.
+constexpr double sum_operations = 70 + 27 + 20;
+constexpr double shift_operations = 210 + 18;
+
+void per_face(benchmark::State& state, std::size_t faces, double bytes, double operations) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(faces));
-    state.counters["s/face"] = benchmark::Counter(
-        static_cast<double>(faces), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    bench::report(state, static_cast<double>(faces), bytes, operations);
 }
 
 void moments_one_by_one(benchmark::State& state) {
@@ -25,13 +33,13 @@ void moments_one_by_one(benchmark::State& state) {
         }
         benchmark::DoNotOptimize(m);
     }
-    per_face(state, patch.areas.size());
+    per_face(state, patch.areas.size(), face_bytes, triangle_operations + sum_operations);
 }
 
 void moments_on_packs(benchmark::State& state) {
     const bench::Patch patch = bench::ellipsoid_patch(static_cast<std::size_t>(state.range(0)));
     for (auto _ : state) benchmark::DoNotOptimize(quadric::soup_moments(patch.soup(), patch.corners[0]));
-    per_face(state, patch.areas.size());
+    per_face(state, patch.areas.size(), face_bytes, triangle_operations + sum_operations);
 }
 
 quadric::MomentBuffers buffers_of(const bench::Patch& patch, std::size_t block) {
@@ -54,8 +62,8 @@ void moments_precompute_buffers(benchmark::State& state) {
     const bench::Patch patch = bench::ellipsoid_patch(static_cast<std::size_t>(state.range(0)));
     quadric::MomentBuffers buffers = buffers_of(patch, 128);
     for (auto _ : state) fill(buffers, patch, 128);
-    per_face(state, patch.areas.size());
-    state.counters["bytes/face"] = static_cast<double>(buffers.bytes()) / static_cast<double>(patch.areas.size());
+    const double bytes = static_cast<double>(buffers.bytes()) / static_cast<double>(patch.areas.size());
+    per_face(state, patch.areas.size(), face_bytes + bytes, triangle_operations);
 }
 
 void moments_streamed_from_buffers(benchmark::State& state) {
@@ -71,7 +79,8 @@ void moments_streamed_from_buffers(benchmark::State& state) {
         }
         benchmark::DoNotOptimize(m);
     }
-    per_face(state, patch.areas.size());
+    const double bytes = static_cast<double>(buffers.bytes()) / static_cast<double>(patch.areas.size());
+    per_face(state, patch.areas.size(), bytes, sum_operations);
 }
 
 quadric::Moments some_moments() {
@@ -85,6 +94,7 @@ void moments_shifted(benchmark::State& state) {
         benchmark::DoNotOptimize(m);
         benchmark::DoNotOptimize(shifted(m, {0.1, 0.2, 0.3}));
     }
+    bench::report(state, 1, 2 * sizeof(quadric::Moments), shift_operations);
 }
 
 void moments_scaled(benchmark::State& state) {
@@ -93,6 +103,7 @@ void moments_scaled(benchmark::State& state) {
         benchmark::DoNotOptimize(m);
         benchmark::DoNotOptimize(scaled(m, 3));
     }
+    bench::report(state, 1, 2 * sizeof(quadric::Moments), 60);
 }
 
 BENCHMARK(moments_one_by_one)->Arg(128)->Arg(100000);

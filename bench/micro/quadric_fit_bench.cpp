@@ -1,4 +1,5 @@
 // Fits from moments (a call) and of whole regions (a face).
+#include "bench/micro/machine.h"
 #include "bench/micro/shapes.h"
 #include "quadric/face_packs.h"
 #include "quadric/fit.h"
@@ -10,8 +11,9 @@
 namespace quadseg {
 namespace {
 
+/// `operations`: of the linear algebra, about.
 template <class Fit>
-void fit_moments(benchmark::State& state, const Fit& fit) {
+void fit_moments(benchmark::State& state, const Fit& fit, double operations) {
     const bench::Patch patch = bench::ellipsoid_patch(288);
     const quadric::Moments about_corner = quadric::soup_moments(patch.soup(), patch.corners[0]);
     const quadric::Spread size = spread(about_corner);
@@ -20,6 +22,7 @@ void fit_moments(benchmark::State& state, const Fit& fit) {
         benchmark::DoNotOptimize(local);
         benchmark::DoNotOptimize(fit(local));
     }
+    bench::report(state, 1, sizeof(quadric::Moments), operations);
 }
 
 void fit_ladder_of_a_pair(benchmark::State& state) {
@@ -29,6 +32,8 @@ void fit_ladder_of_a_pair(benchmark::State& state) {
         benchmark::DoNotOptimize(m);
         benchmark::DoNotOptimize(quadric::fit_ladder(m, 0.5, state.range(0) != 0));
     }
+    // Shift and scaling 290, plane and quadric with their energies; with the ladder three more models.
+    bench::report(state, 1, sizeof(quadric::Moments), 290 + 1900 + (state.range(0) != 0 ? 1500 : 0));
 }
 
 void fit_whole_region(benchmark::State& state) {
@@ -36,19 +41,26 @@ void fit_whole_region(benchmark::State& state) {
     quadric::RegionFitOptions options;
     options.best_of = state.range(1) != 0;
     for (auto _ : state) benchmark::DoNotOptimize(fit_region(patch.soup(), options));
-    state.counters["s/face"] =
-        benchmark::Counter(static_cast<double>(patch.areas.size()),
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    // Moments once and again for each reweighted candidate, the energies of each candidate.
+    const double candidates = options.best_of ? 5 : 3;
+    bench::report(state, static_cast<double>(patch.areas.size()), (1 + 2 * candidates) * 13 * sizeof(double),
+                  500 + candidates * (500 + 225) / 2);
     state.SetLabel(options.best_of ? "best of" : "two steps");
 }
 
 constexpr double weight = 0.5;
-BENCHMARK_CAPTURE(fit_moments, plane, [](const quadric::Moments& m) { return fit_plane(m, weight); });
-BENCHMARK_CAPTURE(fit_moments, taubin, [](const quadric::Moments& m) { return fit_taubin(m); });
-BENCHMARK_CAPTURE(fit_moments, least_squares, [](const quadric::Moments& m) { return fit_least_squares(m, weight); });
-BENCHMARK_CAPTURE(fit_moments, sphere, [](const quadric::Moments& m) { return fit_sphere_linear(m, weight); });
-BENCHMARK_CAPTURE(fit_moments, cylinder, [](const quadric::Moments& m) { return fit_cylinder_linear(m, weight); });
-BENCHMARK_CAPTURE(fit_moments, revolution, [](const quadric::Moments& m) { return fit_revolution_linear(m, weight); });
+BENCHMARK_CAPTURE(
+    fit_moments, plane, [](const quadric::Moments& m) { return fit_plane(m, weight); }, 300);
+BENCHMARK_CAPTURE(
+    fit_moments, taubin, [](const quadric::Moments& m) { return fit_taubin(m); }, 2500);
+BENCHMARK_CAPTURE(
+    fit_moments, least_squares, [](const quadric::Moments& m) { return fit_least_squares(m, weight); }, 1500);
+BENCHMARK_CAPTURE(
+    fit_moments, sphere, [](const quadric::Moments& m) { return fit_sphere_linear(m, weight); }, 400);
+BENCHMARK_CAPTURE(
+    fit_moments, cylinder, [](const quadric::Moments& m) { return fit_cylinder_linear(m, weight); }, 700);
+BENCHMARK_CAPTURE(
+    fit_moments, revolution, [](const quadric::Moments& m) { return fit_revolution_linear(m, weight); }, 900);
 BENCHMARK(fit_ladder_of_a_pair)->Arg(0)->Arg(1);
 BENCHMARK(fit_whole_region)->ArgsProduct({{32, 288, 3200, 100000}, {0, 1}});
 

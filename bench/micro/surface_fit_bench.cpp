@@ -1,6 +1,7 @@
 // Typed fits on 40 tessellation vertices with normals of a jet's quality, and the distances the exact stage asks for.
 #include <quadseg/segmentation.h>
 
+#include "bench/micro/machine.h"
 #include "surface/evaluate.h"
 #include "surface/fit.h"
 #include "surface/jets.h"
@@ -59,6 +60,7 @@ void distance(benchmark::State& state) {
         benchmark::DoNotOptimize(worst);
     }
     state.SetItemsProcessed(state.iterations() * 1000);
+    bench::report(state, 1000, sizeof(Vec3), 15);
 }
 BENCHMARK(distance)->DenseRange(0, 4);
 
@@ -74,6 +76,7 @@ void normal(benchmark::State& state) {
         benchmark::DoNotOptimize(sum);
     }
     state.SetItemsProcessed(state.iterations() * 1000);
+    bench::report(state, 1000, sizeof(Vec3), 25);
 }
 BENCHMARK(normal)->DenseRange(0, 4);
 

@@ -1,4 +1,5 @@
 // The working mesh: time, bytes read and written a face, one and two threads, faces as generated and shuffled.
+#include "bench/micro/machine.h"
 #include "mesh/features.h"
 #include "mesh/work_mesh.h"
 #include "runtime/parallel.h"
@@ -64,11 +65,8 @@ Arrays wavy_grid(std::size_t faces, bool shuffled) {
 }
 
 void per_face(benchmark::State& state, std::size_t faces, double bytes) {
-    const auto work = static_cast<double>(state.iterations()) * static_cast<double>(faces);
-    state.counters["ns/face"] =
-        benchmark::Counter(work / 1e9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-    state.SetBytesProcessed(static_cast<std::int64_t>(work * bytes));
-    state.SetItemsProcessed(static_cast<std::int64_t>(work));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(faces));
+    bench::report(state, static_cast<double>(faces), bytes);
 }
 
 /// Arguments: faces, threads, shuffled.

@@ -1,0 +1,95 @@
+// CGAL's Efficient_RANSAC (Schnabel, Wahl, Klein 2007) with all five shapes, on one oriented point a face.
+#include "bench/rivals/adapter.h"
+#include "bench/rivals/cgal_mesh.h"
+
+#include <CGAL/Random.h>
+#include <CGAL/Shape_detection/Efficient_RANSAC.h>
+#include <CGAL/property_map.h>
+#include <cmath>
+#include <utility>
+
+namespace quadseg::bench {
+namespace {
+
+using PointWithNormal = std::pair<Point, Vector>;
+using RansacTraits = CGAL::Shape_detection::Efficient_RANSAC_traits<Kernel, std::vector<PointWithNormal>,
+                                                                    CGAL::First_of_pair_property_map<PointWithNormal>,
+                                                                    CGAL::Second_of_pair_property_map<PointWithNormal>>;
+using Engine = CGAL::Shape_detection::Efficient_RANSAC<RansacTraits>;
+
+class Ransac : public Adapter {
+  public:
+    explicit Ransac(bool tight) : tight_(tight) {}
+
+    void prepare(const Mesh& mesh, std::size_t) override {
+        // Its own mesh must not matter: the faces as they come, slivers with whatever normal they have.
+        const auto corner = [&mesh](std::size_t c) {
+            const double* p = &mesh.positions[3 * std::size_t{mesh.triangles[c]}];
+            return Point(p[0], p[1], p[2]);
+        };
+        points_.reserve(mesh.triangles.size() / 3);
+        for (std::size_t c = 0; c < mesh.triangles.size(); c += 3) {
+            const Point p = corner(c), q = corner(c + 1), r = corner(c + 2);
+            const Vector n = CGAL::cross_product(q - p, r - p);
+            const double length = std::sqrt(n.squared_length());
+            points_.emplace_back(CGAL::centroid(p, q, r), length > 0 ? n / length : Vector(0, 0, 1));
+        }
+        const CGAL::Bbox_3 box = CGAL::bbox_3(mesh_points(mesh).begin(), mesh_points(mesh).end());
+        diagonal_ = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
+    }
+
+    void segment() override {
+        CGAL::get_default_random() = CGAL::Random(1);
+        engine_.set_input(points_);
+        namespace shapes = CGAL::Shape_detection;
+        engine_.add_shape_factory<shapes::Plane<RansacTraits>>();
+        engine_.add_shape_factory<shapes::Sphere<RansacTraits>>();
+        engine_.add_shape_factory<shapes::Cylinder<RansacTraits>>();
+        engine_.add_shape_factory<shapes::Cone<RansacTraits>>();
+        engine_.add_shape_factory<shapes::Torus<RansacTraits>>();
+        Engine::Parameters parameters;  // by default 1 % of the points and of the diagonal, .9, .05
+        if (tight_) {
+            parameters.min_points = std::max<std::size_t>(20, points_.size() / 1000);
+            parameters.epsilon = 0.001 * diagonal_;
+            parameters.cluster_epsilon = 0.01 * diagonal_;
+            parameters.normal_threshold = 0.95;
+            parameters.probability = 0.05;
+        }
+        engine_.detect(parameters);
+    }
+
+    std::vector<std::int32_t> labels() const override {
+        std::vector<std::int32_t> result(points_.size(), -1);
+        std::int32_t label = 0;
+        for (const auto& shape : engine_.shapes()) {
+            for (const std::size_t i : shape->indices_of_assigned_points()) result[i] = label;
+            ++label;
+        }
+        return result;
+    }
+
+  private:
+    static std::vector<Point> mesh_points(const Mesh& mesh) {
+        std::vector<Point> points;
+        for (std::size_t v = 0; v < mesh.positions.size(); v += 3) {
+            points.emplace_back(mesh.positions[v], mesh.positions[v + 1], mesh.positions[v + 2]);
+        }
+        return points;
+    }
+
+    bool tight_;
+    double diagonal_ = 0;
+    std::vector<PointWithNormal> points_;
+    Engine engine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Adapter> make_ransac() {
+    return std::make_unique<Ransac>(false);
+}
+std::unique_ptr<Adapter> make_ransac_tight() {
+    return std::make_unique<Ransac>(true);
+}
+
+}  // namespace quadseg::bench
