@@ -1,13 +1,15 @@
 #include "flow/dispatch.h"
 
-#include "flow/fast.h"
+#include "flow/coarse.h"
 #include "flow/paper.h"
 #include "flow/standard.h"
 
 namespace quadseg::flow {
 
 FlowResult run_flow(const FlowInput& input) {
-    return input.options.preset == Preset::paper ? run_paper(input) : run_standard(input);
+    if (input.options.preset != Preset::paper) return run_standard(input);
+    const std::size_t coarse = coarse_face_count(input.options, input.mesh.face_count());
+    return coarse > 0 ? run_paper_coarse(input, coarse) : run_paper(input);
 }
 
 }  // namespace quadseg::flow

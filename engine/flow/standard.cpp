@@ -2,6 +2,8 @@
 
 #include "exact/exact.h"
 #include "flow/fast.h"
+#include "flow/noise.h"
+#include "flow/noisy.h"
 
 #include <algorithm>
 
@@ -29,6 +31,12 @@ FlowResult run_standard(const FlowInput& input) {
     if (input.options.regions > 0 || input.options.tolerance > 0) return run_fast(input, fast_options(input.options));
     exact::ExactSurfaces exact;
     try {
+        const NoiseEstimate noise = estimate_noise(input.mesh, input.control);
+        if (noise.noisy()) {
+            FlowResult noisy = run_noisy(input, noise);
+            noisy.noise = noise.sigma;
+            return noisy;
+        }
         exact = exact::find_exact_surfaces(input.mesh, input.control);
     } catch (const runtime::Stopped&) {
         return run_fast(input, fast_options(input.options));
