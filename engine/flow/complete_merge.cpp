@@ -20,7 +20,6 @@ struct Part {
     quadric::RegionFit fit;
     std::vector<std::uint32_t> faces;
     double length = 0;  ///< of its description
-    bool alive = true;
 };
 
 struct Pair {
@@ -47,7 +46,8 @@ class CompleteMerger {
             part.fit = fits[r];
             part.moments = std::move(moments[r]);
             part.faces.assign(faces.face.begin() + faces.begin[r], faces.face.begin() + faces.begin[r + 1]);
-            part.length = std::min(length_of(part.fit), length_of(part.moments));
+            score(part.moments);
+            part.length = std::min(length_of(part.fit), part.moments.score.cost);
         });
     }
 
@@ -62,8 +62,9 @@ class CompleteMerger {
     double length_of(const quadric::RegionFit& fit) const noexcept {
         return fit.total + rules_.price * (fit.proxy.planar() ? 3 : quadric_parameters);
     }
-    double length_of(const MergeRegion& region) const noexcept {
-        return fit_priced(region.moments, rules_.weight, rules_.price).length;
+    void score(MergeRegion& region) const noexcept {
+        const PricedFit fit = fit_priced(region.moments, rules_.weight, rules_.price);
+        region.score = {fit.length, fit.energy, fit.parameters};
     }
 
     void find_pairs() {
@@ -87,8 +88,8 @@ class CompleteMerger {
         unite_equal_pairs();
     }
 
-    /// Sums the borders of equal pairs, in the order they stand in; a sum has to be measured again only if it is one of
-    /// pairs that changed.
+    /// Sums the borders of equal pairs in the order they stand in. Pairs become equal only by a merge, and those are to
+    /// be measured again anyway.
     void unite_equal_pairs() {
         std::stable_sort(pairs_.begin(), pairs_.end(), by_regions);
         std::size_t kept = 0;
@@ -112,6 +113,7 @@ class CompleteMerger {
         const double area = a.moments.total_area + b.moments.total_area;
         r.origin = area > 0 ? a.origin + (b.origin - a.origin) * (b.moments.total_area / area) : a.origin;
         r.moments = quadric::joined(a.moments, a.origin, b.moments, b.origin, r.origin);
+        score(r);
         return r;
     }
 
@@ -145,12 +147,18 @@ class CompleteMerger {
         const Part &a = parts_[p.a], &b = parts_[p.b];
         const double apart = a.length + b.length, limit = allowance(p);
         const MergeRegion joint = join(a.moments, b.moments);
-        double rise = length_of(joint) - apart;
+        double rise = joint.score.cost - apart;
         if (rise <= limit) return rise;
         const bool a_is_small = a.faces.size() < b.faces.size();
         const Part &small = a_is_small ? a : b, &large = a_is_small ? b : a;
         if (rules_.size_ratio * static_cast<double>(small.faces.size()) < static_cast<double>(large.faces.size())) {
             return std::min(rise, energy_under(small, large.fit.proxy) - small.length);
+        }
+        // Least squares overestimate a joint quadric's energy, but not by more than this on true surfaces.
+        constexpr double overestimate = 0.25;
+        if (joint.score.energy - a.moments.score.energy - b.moments.score.energy >
+            overestimate * (a.moments.score.energy + b.moments.score.energy)) {
+            return rise;
         }
         // No quadric is nearer to the pair than Taubin's: what it refuses by its distance alone need not be fitted.
         const quadric::Spread size = quadric::spread(joint.moments);
@@ -225,9 +233,8 @@ class CompleteMerger {
         a.moments = join(a.moments, b.moments);
         a.faces = std::move(faces);
         b.faces = {};
-        b.alive = false;
         a.fit = fit_faces(a.faces);
-        a.length = std::min({expected, length_of(a.fit), length_of(a.moments)});
+        a.length = std::min({expected, length_of(a.fit), a.moments.score.cost});
     }
 
     const partition::Passage& passage_;

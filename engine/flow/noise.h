@@ -16,6 +16,11 @@ struct NoiseEstimate {
     bool noisy() const noexcept { return sigma > 0.02 * edge; }
 };
 
+/// Degrees by which a region's normals may miss its surface where it is worth a merge: small on exact meshes, larger on
+/// organic shapes and light scans, whose surfaces are no quadrics and whose noise is correlated, and fading to nothing
+/// where the noise is strong enough to be its own allowance.
+double misfit_angle(const NoiseEstimate& noise) noexcept;
+
 /// The smaller of two estimates: one from the bilaplacian of the vertices, which creases inflate, and one from the
 /// 20 % quantile of the dihedral angles, which is 0 on CAD meshes. Saturates near 0.4 edges. Throws Stopped.
 NoiseEstimate estimate_noise(const mesh::WorkMesh& mesh, const runtime::RunControl& control);

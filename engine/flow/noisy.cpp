@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -21,10 +20,13 @@ namespace {
 using partition::Labels;
 using partition::Passage;
 
-double knob(const char* name, double value) {
-    const char* s = std::getenv(name);
-    return s ? std::atof(s) : value;
-}
+constexpr double moment_price = 4;    ///< of a parameter in units of the evidence, when merging on moments …
+constexpr double complete_price = 6;  ///< … and by complete fits
+/// What removed border is worth in a merge, of its price in relaxation: all of it would swallow small surfaces.
+constexpr double border_share = 0.3;
+constexpr int relax_steps = 2;
+constexpr int cut_rings = 4;
+constexpr std::size_t smallest_region = 8;
 
 class NoisyFlow {
   public:
@@ -35,11 +37,10 @@ class NoisyFlow {
         ratio_ = noise.sigma / h;
         evidence_ = noise.sigma * noise.sigma * 2 * mean_area / input.options.detail;
         // Maximum likelihood says h²/2 (MATH.md §3); .5 to 1 are all fine, less over-merges, more fragments.
-        weight_ = knob("OM", .75) * h * h;
-        border_price_ = knob("BETA", 2) * evidence_ / h;
-        const double angle = 8 * std::numbers::pi / 180;
-        const double fading = std::min(1.0, 0.03 / ratio_);
-        misfit_ = angle * angle * weight_ * fading * fading;
+        weight_ = 0.75 * h * h;
+        border_price_ = 2 * evidence_ / h;  // an edge of length h is worth a χ² of 2
+        const double angle = misfit_angle(noise) * std::numbers::pi / 180;
+        misfit_ = angle * angle * weight_ / input.options.detail;
         result_.noise = noise.sigma;
     }
 
@@ -48,18 +49,11 @@ class NoisyFlow {
         count_ = mesh_.component_count;
         try {
             grow();
-            const int levels = static_cast<int>(knob("LEVELS", 2));
-            const double shrink = knob("SHRINK", 4);
-            for (int level = 0; level < levels && !result_.partial; ++level) {
-                merge(static_cast<std::size_t>(static_cast<double>(count_) / shrink), knob("KAPPA", 4));
-                if (!result_.partial) relax_on_moments(1);
-            }
-            if (!result_.partial) merge(0, knob("KAPPA", 4));
-            const int steps = static_cast<int>(knob("STEPS", 2));
-            if (!result_.partial) relax(steps);
-            for (int round = 0; round < static_cast<int>(knob("EXACT", 2)) && !result_.partial; ++round) {
-                merge_completely(knob("KEXACT", 6));
-                relax(steps);
+            if (!result_.partial) merge_on_moments();
+            if (!result_.partial) relax();
+            for (int round = 0; round < 2 && !result_.partial; ++round) {
+                merge_completely();
+                relax();
             }
             if (!result_.partial) clean_up();
         } catch (const runtime::Stopped&) {
@@ -74,32 +68,26 @@ class NoisyFlow {
   private:
     void grow() {
         const bool light = ratio_ < 0.25;
+        const std::vector<Vec3> normals = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
         partition::LeafOptions options;
-        options.largest = static_cast<std::size_t>(knob("LEAF", light ? 24 : 48));
+        options.largest = light ? 24 : 48;
         options.smallest_coplanar = 0;
-        const std::vector<Vec3> normals =
-            filtered_normals(mesh_, light ? 1 : 2, static_cast<int>(knob("BIL", light ? 3 : 10)), control_);
         options.normals = normals;
         partition::Leaves leaves = partition::grow_leaves(passage_, options, control_);
         labels_ = std::move(leaves.labels);
         count_ = leaves.count;
         measure();
-        partition::RelaxOptions relax = relax_options();
-        relax.moment_steps = 3;
-        relax.steps = -1;
-        relax.moment_fit = [this](const quadric::Moments& m) {
-            const PricedFit fit = plane_priced(m, weight_, 0);
-            return partition::MomentFit{fit.c, fit.energy};
+        partition::RelaxOptions straighten;
+        straighten.fit.weight = weight_;
+        straighten.border_price = border_price_;
+        straighten.moment_steps = 3;
+        straighten.steps = -1;
+        straighten.moment_fit = [weight = weight_](const quadric::Moments& m) {
+            const PricedFit plane = plane_priced(m, weight, 0);
+            return partition::MomentFit{plane.c, plane.energy};
         };
-        run_relax(relax);
+        relax(straighten);
         control_.report(Phase::fine, 0.3, count_);
-    }
-
-    partition::Scorer scorer(double kappa) const {
-        return [weight = weight_, price = kappa * evidence_](const quadric::Moments& m) {
-            const PricedFit fit = fit_priced(m, weight, price);
-            return partition::RegionScore{fit.length, fit.energy, fit.parameters};
-        };
     }
 
     void measure() {
@@ -107,72 +95,60 @@ class NoisyFlow {
             mesh_, labels_, count_, [](const quadric::Moments&) { return partition::RegionScore{}; }, control_);
     }
 
-    void merge(std::size_t target, double kappa) {
-        const partition::Scorer score = scorer(kappa);
+    void merge_on_moments() {
+        const partition::Scorer score = [weight = weight_,
+                                         price = moment_price * evidence_](const quadric::Moments& m) {
+            const PricedFit fit = fit_priced(m, weight, price);
+            return partition::RegionScore{fit.length, fit.energy, fit.parameters};
+        };
         runtime::parallel_for(regions_.size(), 64,
                               [&](std::size_t r) { regions_[r].score = score(regions_[r].moments); });
         partition::MergeRules rules;
-        rules.target = target;
-        rules.only_acceptable = true;
         rules.misfit = misfit_;
         partition::Merging merging = partition::merge_pairs(
             std::move(regions_), partition::region_pairs(passage_, labels_, control_), rules, score, control_);
         for (std::int32_t& label : labels_) label = merging.region_of[static_cast<std::size_t>(label)];
         regions_ = std::move(merging.regions);
         count_ = regions_.size();
-        result_.history.insert(result_.history.end(), merging.history.begin(), merging.history.end());
+        result_.history = std::move(merging.history);
         result_.partial = merging.stopped;
+        control_.report(Phase::fine, 0.5, count_);
     }
 
-    partition::RelaxOptions relax_options() const {
-        partition::RelaxOptions options;
-        options.border_price = border_price_;
-        options.fit.weight = weight_;
-        options.fit.plane_tolerance = 0;
-        return options;
-    }
-
-    void relax_on_moments(int steps) {
-        partition::RelaxOptions options = relax_options();
-        options.moment_steps = steps;
-        options.steps = -1;
-        options.moment_fit = [this](const quadric::Moments& m) {
-            const PricedFit fit = fit_priced(m, weight_, 4 * evidence_);
-            return partition::MomentFit{fit.c, fit.energy};
-        };
-        run_relax(options);
-    }
-
-    void relax(int steps) {
-        partition::RelaxOptions options = relax_options();
-        options.moment_steps = 0;
-        options.steps = steps;
-        run_relax(options);
-    }
-
-    void merge_completely(double kappa) {
+    void merge_completely() {
         CompleteMergeRules rules;
         rules.weight = weight_;
-        rules.price = kappa * evidence_;
-        rules.border_reward = knob("REWARD", 0.3) * border_price_;
+        rules.price = complete_price * evidence_;
+        rules.border_reward = border_share * border_price_;
         rules.misfit = misfit_;
         count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), rules, control_);
-        measure();
+        control_.report(Phase::fine, 0.7, count_);
     }
 
     void clean_up() {
         partition::AbsorbOptions options;
-        options.smallest_region = static_cast<std::size_t>(knob("SMALL", 8));
+        options.smallest_region = smallest_region;
         options.tolerance = std::numeric_limits<double>::infinity();
         options.weight = weight_;
         const std::size_t before = count_;
         count_ = partition::absorb_small(passage_, labels_, count_, fits_, options, control_);
-        if (count_ == before) return;
-        measure();
-        relax(static_cast<int>(knob("LAST", 2)));
+        if (count_ != before) relax();
     }
 
-    void run_relax(const partition::RelaxOptions& options) {
+    void relax() {
+        partition::RelaxOptions options;
+        options.fit.weight = weight_;
+        options.fit.plane_tolerance = 0;
+        options.border_price = border_price_;
+        options.cut_rings = cut_rings;
+        options.moment_steps = 0;
+        options.steps = relax_steps;
+        regions_.resize(count_);
+        relax(options);
+    }
+
+    /// Leaves labels without gaps, with their fits and moments.
+    void relax(const partition::RelaxOptions& options) {
         partition::Relaxed relaxed = partition::relax(passage_, labels_, std::move(regions_), options, control_);
         result_.partial = relaxed.stopped;
         if (result_.partial) return;

@@ -1,7 +1,9 @@
 #include "partition/relax.h"
 
+#include "partition/band_cut.h"
 #include "quadric/ladder.h"
 #include "runtime/parallel.h"
+#include "runtime/per_thread.h"
 
 #include <algorithm>
 #include <array>
@@ -209,6 +211,141 @@ class Relaxer {
         return border;
     }
 
+    std::vector<std::uint32_t> all_border_faces() {
+        const std::vector<std::uint8_t> dirty = dirty_;
+        std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
+        std::vector<std::uint32_t> border = border_faces();
+        dirty_ = dirty;
+        return border;
+    }
+
+    /// The faces of a pair of regions near their border, and where its cheapest cut runs.
+    struct Band {
+        std::int32_t a = 0, b = 0;
+        std::vector<std::uint32_t> faces;  ///< at the border first; after the cut those that change sides
+    };
+
+    std::vector<Band> bands() {
+        struct Key {
+            std::int32_t a, b;
+            std::uint32_t face;
+        };
+        std::vector<Key> keys;
+        for (const std::uint32_t f : border_faces()) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t other = label_across(f, k);
+                if (other >= 0 && other != labels_[f]) {
+                    keys.push_back({std::min(other, labels_[f]), std::max(other, labels_[f]), f});
+                }
+            }
+        }
+        std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
+            return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.face < y.face;
+        });
+        std::vector<Band> result;
+        for (const Key& key : keys) {
+            if (result.empty() || result.back().a != key.a || result.back().b != key.b) {
+                result.push_back({key.a, key.b, {}});
+            }
+            std::vector<std::uint32_t>& faces = result.back().faces;
+            if (faces.empty() || faces.back() != key.face) faces.push_back(key.face);
+        }
+        return result;
+    }
+
+    struct CutScratch {
+        BandCut cut;
+        std::vector<std::int32_t> node;  ///< of a face; −1: not in the band
+    };
+
+    void cut_band(Band& band, CutScratch& scratch) const {
+        std::vector<std::int32_t>& node = scratch.node;
+        if (node.empty()) node.assign(labels_.size(), -1);
+        for (std::size_t i = 0; i < band.faces.size(); ++i) node[band.faces[i]] = static_cast<std::int32_t>(i);
+        std::size_t ring_begin = 0;
+        for (int ring = 0; ring < options_.cut_rings; ++ring) {
+            const std::size_t ring_end = band.faces.size();
+            for (std::size_t i = ring_begin; i < ring_end; ++i) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t g = passage_.across(band.faces[i], k);
+                    if (g < 0) continue;
+                    const auto u = static_cast<std::size_t>(g);
+                    if (node[u] >= 0 || (labels_[u] != band.a && labels_[u] != band.b)) continue;
+                    node[u] = static_cast<std::int32_t>(band.faces.size());
+                    band.faces.push_back(static_cast<std::uint32_t>(u));
+                }
+            }
+            ring_begin = ring_end;
+        }
+        scratch.cut.clear();
+        for (const std::uint32_t f : band.faces) {
+            double in_a = energy(f, band.a), in_b = energy(f, band.b);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = passage_.across(f, k);
+                if (g < 0 || node[static_cast<std::size_t>(g)] >= 0) continue;
+                const double price = options_.border_price * edge_length(f, k);
+                if (labels_[static_cast<std::size_t>(g)] == band.a) in_b += price;
+                if (labels_[static_cast<std::size_t>(g)] == band.b) in_a += price;
+            }
+            scratch.cut.add_node(in_a, in_b);
+        }
+        for (std::size_t i = 0; i < band.faces.size(); ++i) {
+            const std::size_t f = band.faces[i];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = passage_.across(f, k);
+                if (g < 0) continue;
+                const std::int32_t j = node[static_cast<std::size_t>(g)];
+                if (j <= static_cast<std::int32_t>(i)) continue;
+                const auto& back = mesh_.neighbors[static_cast<std::size_t>(g)];
+                const auto slot = static_cast<std::size_t>(
+                    std::find(back.begin(), back.end(), static_cast<std::int32_t>(f)) - back.begin());
+                if (slot < 3) {
+                    scratch.cut.add_edge(i, k, static_cast<std::size_t>(j), slot,
+                                         options_.border_price * edge_length(f, k));
+                }
+            }
+        }
+        const std::vector<std::uint8_t>& side = scratch.cut.solve();
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < band.faces.size(); ++i) {
+            const std::uint32_t f = band.faces[i];
+            node[f] = -1;
+            if (labels_[f] != (side[i] == 0 ? band.a : band.b)) band.faces[kept++] = f;
+        }
+        band.faces.resize(kept);
+    }
+
+    /// All pairs are cut at once; a cut holds unless another one before it changed a face that it reckoned with.
+    bool cut_borders() {
+        std::vector<Band> cuts = bands();
+        runtime::PerThread<CutScratch> scratch;
+        runtime::parallel_for(cuts.size(), 1, [&](std::size_t i) {
+            control_.check();
+            cut_band(cuts[i], scratch.local());
+        });
+        ++sweep_stamp_;
+        std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
+        bool moved = false;
+        for (const Band& band : cuts) {
+            const auto touched = [&](std::uint32_t f) {
+                if (stamp_[f] == sweep_stamp_) return true;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t g = passage_.across(f, k);
+                    if (g >= 0 && stamp_[static_cast<std::size_t>(g)] == sweep_stamp_) return true;
+                }
+                return false;
+            };
+            if (band.faces.empty() || std::any_of(band.faces.begin(), band.faces.end(), touched)) continue;
+            for (const std::uint32_t f : band.faces) {
+                labels_[f] = labels_[f] == band.a ? band.b : band.a;
+                stamp_[f] = sweep_stamp_;
+            }
+            dirty_[static_cast<std::size_t>(band.a)] = dirty_[static_cast<std::size_t>(band.b)] = 1;
+            moved = true;
+        }
+        return moved;
+    }
+
     struct Decision {
         std::int32_t label;
         double gain;
@@ -252,8 +389,14 @@ class Relaxer {
     /// Sweeps over the border until no face gains. Without a price of borders E is a sum over faces and all may decide
     /// at once (Jacobi); with one, neighbours take turns: the larger gain first.
     bool move_faces() {
-        std::vector<std::uint32_t> work = border_faces();
+        const bool cut = options_.border_price > 0 && options_.cut_rings > 0 && cut_borders();
+        const std::vector<std::uint8_t> cut_dirty = cut ? dirty_ : std::vector<std::uint8_t>();
+        return sweep(cut ? all_border_faces() : border_faces(), cut_dirty) || cut;
+    }
+
+    bool sweep(std::vector<std::uint32_t> work, const std::vector<std::uint8_t>& dirty_before) {
         std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
+        if (!dirty_before.empty()) dirty_ = dirty_before;
         const bool take_turns = options_.border_price > 0;
         if (take_turns && gain_.empty()) gain_.assign(labels_.size(), 0);
         std::vector<Decision> decided;

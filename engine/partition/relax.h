@@ -28,6 +28,8 @@ struct RelaxOptions {
     quadric::RegionFitOptions fit;
     /// Price of border length: > 0 makes borders short (Potts model), as noise asks for.
     double border_price = 0;
+    /// With a price of borders: the border between two regions is first cut anew within so many rings of faces; 0: not.
+    int cut_rings = 0;
     /// Fits of the first steps; none: plane or quadric by least squares. Callable from several threads at once.
     std::function<MomentFit(const quadric::Moments&)> moment_fit = {};
 };
