@@ -18,8 +18,8 @@ namespace quadseg::exact {
 
 namespace {
 
-/// Of a facet, radians: at most, where curved surfaces tell; and where there are none to tell.
-constexpr double most_step = 0.9, unknown_step = 0.7;
+/// Turn of a facet, radians: bounds of what curved surfaces tell, and what is assumed where there are none to tell.
+constexpr double least_step = 0.13, most_step = 0.9, unknown_step = 0.7;
 constexpr double suspicious_turn = 1.7;
 
 /// Sure facets, largest first, grown to planes; a facet inside an earlier plane is none of its own.
@@ -64,7 +64,7 @@ void ask_again(const Scene& scene, double step, std::vector<Candidate>& candidat
         }
     }
     if (!suspicious) return;
-    append(candidates, search_surfaces(scene, {.most_step = suspicious_turn * step}, covered));
+    append(candidates, search_surfaces(scene, {.rows_only = true, .most_step = suspicious_turn * step}, covered));
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::Run
     std::vector<std::uint8_t> covered(mesh.face_count(), 0);
     append(candidates, search_surfaces(scene, {}, covered));
     const double learned = learn_step(candidates);
-    const double step = learned > 0 ? std::min(learned, most_step) : unknown_step;
+    const double step = learned > 0 ? std::clamp(learned, least_step, most_step) : unknown_step;
     ask_again(scene, step, candidates);
     Selection selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);

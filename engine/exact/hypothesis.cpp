@@ -13,8 +13,13 @@ namespace quadseg::exact {
 
 namespace {
 
-constexpr std::array<std::size_t, 5> patch_sizes{40, 16, 8, 5, 3};
-constexpr std::array<std::size_t, 4> row_sizes{24, 10, 5, 3};
+/// A patch that a surface explains has parts that it explains too: the first size decides whether the large one is
+/// worth a try, the smaller ones are for faces that are narrow.
+struct PatchSizes {
+    std::size_t gate, large;
+    std::array<std::size_t, 2> small;
+};
+constexpr PatchSizes disc_sizes{12, 40, {6, 3}}, row_sizes{8, 24, {5, 3}};
 constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
                            SurfaceType::torus};
 constexpr double most_gap = 0.3;
@@ -222,7 +227,7 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
     return patch;
 }
 
-std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance,
+std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance, bool coarse,
                                Marks& marks) {
     const PatchPoints p = patch_points(scene, faces, marks);
     std::optional<Surface> best;
@@ -235,6 +240,8 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
         if (p.points.size() < static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 3) continue;
         for (const std::vector<Vec3>* normals : {&p.jet_normals, &p.face_normals}) {
             if (normals->empty()) continue;
+            // Height fields over the mean plane are poor only where facets turn far.
+            if (normals == &p.face_normals && !p.jet_normals.empty() && !coarse) break;
             const surface::PointSet points{p.points, *normals, {}};
             const surface::SurfaceFit fit = surface::fit(type, points, options);
             if (!holds(scene, fit, points, tolerance)) continue;
@@ -255,26 +262,41 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, co
     // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
     const bool strips =
         scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[seed])) > 1 || is_long(scene, seed);
-    const auto try_patch = [&](const PatchShape& shape,
-                               std::span<const std::size_t> sizes) -> std::optional<Candidate> {
-        const Patch patch = collect_patch(scene, seed, sizes.front(), shape, usable, marks);
-        std::size_t tried = 0;
-        for (const std::size_t size : sizes) {
-            const std::size_t facets = std::min(size, patch.facet_end.size());
-            if (facets < 2 || facets == tried) continue;
-            tried = facets;
-            const std::vector<std::uint32_t> faces = patch.up_to(facets);
-            const std::optional<Surface> surface = explain(scene, faces, tolerance, marks);
-            if (!surface) continue;
-            Candidate candidate = grow(scene, *surface, faces, options.most_step, marks);
+    const auto try_patch = [&](const PatchShape& shape, const PatchSizes& sizes) -> std::optional<Candidate> {
+        const Patch patch = collect_patch(scene, seed, sizes.large, shape, usable, marks);
+        const std::size_t available = patch.facet_end.size();
+        if (available < 2) return std::nullopt;
+        const auto explained_part = [&](std::size_t facets) {
+            return explain(scene, patch.up_to(facets), tolerance, strips, marks);
+        };
+        const auto grown = [&](const Surface& surface, std::size_t facets) -> std::optional<Candidate> {
+            Candidate candidate = grow(scene, surface, patch.up_to(facets), options.most_step, marks);
             candidate.loose = options.loose;
-            if (candidate.faces.size() * 2 < faces.size() || candidate.step > options.most_step) continue;
-            if (candidate.gap > most_gap && !at_precision(scene, candidate)) continue;
+            if (candidate.faces.size() * 2 < patch.facet_end[facets - 1]) return std::nullopt;
+            if (candidate.gap > most_gap && !at_precision(scene, candidate)) return std::nullopt;
             return candidate;
+        };
+        const std::size_t gate = std::min(sizes.gate, available);
+        if (const std::optional<Surface> surface = explained_part(gate)) {
+            const std::size_t large = std::min(sizes.large, available);
+            if (large > gate) {
+                if (const std::optional<Surface> larger = explained_part(large)) {
+                    if (std::optional<Candidate> found = grown(*larger, large)) return found;
+                }
+            }
+            if (std::optional<Candidate> found = grown(*surface, gate)) return found;
+        }
+        for (const std::size_t size : sizes.small) {
+            if (size >= gate) continue;
+            if (const std::optional<Surface> surface = explained_part(size)) {
+                if (std::optional<Candidate> found = grown(*surface, size)) return found;
+            }
         }
         return std::nullopt;
     };
-    if (std::optional<Candidate> found = try_patch({}, patch_sizes)) return found;
+    if (!options.rows_only) {
+        if (std::optional<Candidate> found = try_patch({}, disc_sizes)) return found;
+    }
     if (!strips) return std::nullopt;
     for (const PatchShape& row : rows_through(scene, seed)) {
         if (std::optional<Candidate> found = try_patch(row, row_sizes)) return found;

@@ -32,11 +32,12 @@ struct PatchShape {
 Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, const PatchShape& shape,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
-/// The surface that explains a patch, if one does within the tolerance.
-std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance,
+/// The surface that explains a patch, if one does within the tolerance. `coarse`: facets turn far, face normals are
+/// worth a try.
+std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance, bool coarse,
                                Marks& marks);
 
-/// Tries patches of falling size around a seed; grows the first surface that holds. Empty: no surface, or one that an
+/// Tries discs and rows of facets around a seed; grows the first surface that holds. Empty: no surface, or one that an
 /// honest look at its border refuses.
 std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
                                       const std::function<bool(std::uint32_t)>& usable, Marks& marks);

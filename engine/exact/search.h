@@ -9,8 +9,9 @@
 namespace quadseg::exact {
 
 struct SearchOptions {
-    bool loose = false;     ///< second pass, for parts whose edge curves are approximations
-    double most_step = 10;  ///< candidates whose facets turn further are not taken, radians
+    bool rows_only = false;  ///< only seeds in rows of long facets, and no discs around them
+    bool loose = false;      ///< second pass, for parts whose edge curves are approximations
+    double most_step = 10;   ///< candidates whose facets turn further are not taken, radians
 };
 
 /// Candidates of all charts, in an order that depends on the mesh only. `covered` (a flag a face) is read and extended.
