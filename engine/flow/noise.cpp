@@ -121,7 +121,7 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
 }  // namespace
 
 double misfit_angle(const NoiseEstimate& noise) noexcept {
-    constexpr double exact = 4.4, organic = 14, noisy_from = 0.02, fading_from = 0.035;
+    constexpr double exact = 4.4, organic = 14, noisy_from = 0.02, fading_from = 0.042;
     const double ratio = noise.edge > 0 ? noise.sigma / noise.edge : 0;
     if (ratio < noisy_from) return exact + (organic - exact) * ratio / noisy_from;
     const double fading = std::min(1.0, fading_from / ratio);

@@ -119,6 +119,9 @@ class NoisyFlow {
         CompleteMergeRules rules;
         rules.weight = weight_;
         rules.price = complete_price * evidence_;
+        // Chance has a place for a crumb at every face; under strong noise true small surfaces look no different.
+        rules.region_price =
+            std::min(1.5, 0.13 / ratio_) * evidence_ * std::log(static_cast<double>(mesh_.face_count()));
         rules.border_reward = border_share * border_price_;
         rules.misfit = misfit_;
         count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), rules, control_);
