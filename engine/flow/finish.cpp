@@ -62,7 +62,7 @@ std::vector<double> areas_of(const std::vector<RegionQuality>& quality) {
 void smooth(const FlowInput& input, FlowResult& flow, partition::RegionFaces& regions,
             std::vector<FinalSurface>& surfaces, Segmentation& result) {
     result.borders_before = partition::measure_borders(input.mesh, flow.labels);
-    if (smooth_borders(input, flow, regions, surfaces)) {
+    if (smooth_borders(input, flow, surfaces)) {
         regions = partition::region_faces(flow.labels, flow.regions);
         surfaces = final_surfaces(input, regions, flow);
     }

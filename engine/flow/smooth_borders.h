@@ -8,9 +8,8 @@
 
 namespace quadseg::flow {
 
-/// Moves the labels of faces near borders; region numbers stay. Returns whether any label changed. Not stopped by
-/// control: bounded by O(F); a stopped run stops after the current batch of borders.
-bool smooth_borders(const FlowInput& input, FlowResult& flow, const partition::RegionFaces& regions,
-                    const std::vector<FinalSurface>& surfaces);
+/// Moves the labels of faces near borders; region numbers stay. Returns whether any label changed; a run that is
+/// stopped in here keeps its labels.
+bool smooth_borders(const FlowInput& input, FlowResult& flow, const std::vector<FinalSurface>& surfaces);
 
 }  // namespace quadseg::flow
