@@ -4,6 +4,7 @@
 #include "exact/explained.h"
 #include "exact/face_fit.h"
 #include "exact/grow.h"
+#include "exact/release.h"
 #include "exact/scene.h"
 #include "exact/search.h"
 #include "exact/select.h"
@@ -89,6 +90,7 @@ ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::Run
     add_planes(scene, step, state);
     extend_to_borders(scene, step, state);
     unite_equal(scene, step, state);
+    release_doubtful(scene, state);
     absorb_scraps(scene, state);
     unite_equal(scene, step, state);
 

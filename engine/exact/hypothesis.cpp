@@ -235,7 +235,7 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     surface::FitOptions options;
     options.iterations = 20;
     options.minimum_scale = tolerance / 1000;
-    options.hopeless = 1000 * tolerance;
+    options.hopeless = std::min(1000 * tolerance, std::max(30 * tolerance, scene.tolerances.trim));
     for (const SurfaceType type : types) {
         if (p.points.size() < static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 3) continue;
         for (const std::vector<Vec3>* normals : {&p.jet_normals, &p.face_normals}) {
