@@ -20,7 +20,7 @@ const Machine& machine();
 inline void report(benchmark::State& state, double items, double bytes, double operations = 0) {
     using benchmark::Counter;
     const double all = items * static_cast<double>(state.iterations());
-    state.counters["ns/item"] = Counter(all / 1e9, Counter::kIsRate | Counter::kInvert);
+    state.counters["time/item"] = Counter(all, Counter::kIsRate | Counter::kInvert);
     if (bytes > 0) {
         state.counters["bytes/item"] = bytes;
         state.counters["of_bandwidth"] = Counter(all * bytes / machine().bytes_per_second, Counter::kIsRate);

@@ -6,15 +6,16 @@
 #include <CGAL/Shape_detection/Efficient_RANSAC.h>
 #include <CGAL/property_map.h>
 #include <cmath>
-#include <utility>
+#include <tuple>
 
 namespace quadseg::bench {
 namespace {
 
-using PointWithNormal = std::pair<Point, Vector>;
-using RansacTraits = CGAL::Shape_detection::Efficient_RANSAC_traits<Kernel, std::vector<PointWithNormal>,
-                                                                    CGAL::First_of_pair_property_map<PointWithNormal>,
-                                                                    CGAL::Second_of_pair_property_map<PointWithNormal>>;
+/// With its face: detect() reorders its input.
+using FacePoint = std::tuple<Point, Vector, std::size_t>;
+using RansacTraits = CGAL::Shape_detection::Efficient_RANSAC_traits<Kernel, std::vector<FacePoint>,
+                                                                    CGAL::Nth_of_tuple_property_map<0, FacePoint>,
+                                                                    CGAL::Nth_of_tuple_property_map<1, FacePoint>>;
 using Engine = CGAL::Shape_detection::Efficient_RANSAC<RansacTraits>;
 
 class Ransac : public Adapter {
@@ -22,7 +23,6 @@ class Ransac : public Adapter {
     explicit Ransac(bool tight) : tight_(tight) {}
 
     void prepare(const Mesh& mesh, std::size_t) override {
-        // Its own mesh must not matter: the faces as they come, slivers with whatever normal they have.
         const auto corner = [&mesh](std::size_t c) {
             const double* p = &mesh.positions[3 * std::size_t{mesh.triangles[c]}];
             return Point(p[0], p[1], p[2]);
@@ -32,9 +32,10 @@ class Ransac : public Adapter {
             const Point p = corner(c), q = corner(c + 1), r = corner(c + 2);
             const Vector n = CGAL::cross_product(q - p, r - p);
             const double length = std::sqrt(n.squared_length());
-            points_.emplace_back(CGAL::centroid(p, q, r), length > 0 ? n / length : Vector(0, 0, 1));
+            points_.emplace_back(CGAL::centroid(p, q, r), length > 0 ? n / length : Vector(0, 0, 1), c / 3);
         }
-        const CGAL::Bbox_3 box = CGAL::bbox_3(mesh_points(mesh).begin(), mesh_points(mesh).end());
+        CGAL::Bbox_3 box;
+        for (std::size_t c = 0; c < mesh.triangles.size(); ++c) box += corner(c).bbox();
         diagonal_ = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
     }
 
@@ -62,24 +63,16 @@ class Ransac : public Adapter {
         std::vector<std::int32_t> result(points_.size(), -1);
         std::int32_t label = 0;
         for (const auto& shape : engine_.shapes()) {
-            for (const std::size_t i : shape->indices_of_assigned_points()) result[i] = label;
+            for (const std::size_t i : shape->indices_of_assigned_points()) result[std::get<2>(points_[i])] = label;
             ++label;
         }
         return result;
     }
 
   private:
-    static std::vector<Point> mesh_points(const Mesh& mesh) {
-        std::vector<Point> points;
-        for (std::size_t v = 0; v < mesh.positions.size(); v += 3) {
-            points.emplace_back(mesh.positions[v], mesh.positions[v + 1], mesh.positions[v + 2]);
-        }
-        return points;
-    }
-
     bool tight_;
     double diagonal_ = 0;
-    std::vector<PointWithNormal> points_;
+    std::vector<FacePoint> points_;
     Engine engine_;
 };
 

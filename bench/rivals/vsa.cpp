@@ -62,9 +62,7 @@ class QuadricMetric {
             normals.push_back(normals_[f]);
             areas.push_back(areas_[f]);
         }
-        quadric::RegionFitOptions options;
-        options.best_of = false;  // the paper's two steps
-        return quadric::fit_region({corners, normals, areas}, options).proxy;
+        return quadric::fit_region({corners, normals, areas}, {}).proxy;
     }
 
   private:
