@@ -44,7 +44,7 @@ class CompleteMerger {
         runtime::parallel_for(parts_.size(), 16, [&](std::size_t r) {
             Part& part = parts_[r];
             part.fit = fits[r];
-            part.moments = std::move(moments[r]);
+            part.moments = moments[r];
             part.faces.assign(faces.face.begin() + faces.begin[r], faces.face.begin() + faces.begin[r + 1]);
             score(part.moments);
             part.length = std::min(length_of(part.fit), part.moments.score.cost);

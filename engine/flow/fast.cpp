@@ -185,16 +185,16 @@ class FastFlow {
         for (int round = 0; round < fast_.split_rounds && !result_.partial && is_organic(relaxed.energy); ++round) {
             const Labels labels = labels_;
             const std::size_t count = count_;
-            partition::Relaxed before = std::move(relaxed);
-            dissolve_worst(before.fits);
+            dissolve_worst(relaxed.fits);
             merge_down();
-            if (!result_.partial) relaxed = relax();
-            if (result_.partial || !(relaxed.energy < before.energy)) {
+            partition::Relaxed again;
+            if (!result_.partial) again = relax();
+            if (result_.partial || !(again.energy < relaxed.energy)) {
                 labels_ = labels;
                 count_ = count;
-                relaxed = std::move(before);
                 break;
             }
+            relaxed = std::move(again);
         }
         if (result_.partial) return;
         control_.report(Phase::fine, 0.8, count_, relaxed.energy);

@@ -195,13 +195,13 @@ class Merger {
                     continue;
                 }
             }
-            MergeRegion joint = join(regions_[a], regions_[b]);
+            const MergeRegion joint = join(regions_[a], regions_[b]);
             if ((rules_.target == 0 || rules_.only_acceptable) && !acceptable(e, joint)) continue;
-            merge(a, b, std::move(joint), result);
+            merge(a, b, joint, result);
         }
     }
 
-    void merge(std::uint32_t a, std::uint32_t b, MergeRegion&& joint, Merging& result) {
+    void merge(std::uint32_t a, std::uint32_t b, const MergeRegion& joint, Merging& result) {
         energy_ += joint.score.energy - regions_[a].score.energy - regions_[b].score.energy;
         regions_[a] = joint;
         parent_[b] = a;
