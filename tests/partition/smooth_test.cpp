@@ -231,6 +231,8 @@ TEST(Smooth, WrongFacesAlongAnEdgeComeBack) {
     std::size_t wrong = 0;
     std::vector<std::uint8_t> stays(labels.size(), 0);  // a wrong face hangs on a right one
     for (std::size_t f = 0; f < labels.size(); ++f) {
+        const Vec3 c = box.mesh.centroid(f);
+        if (std::min({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) > 0.3) continue;  // corners could be cut off
         for (const std::int32_t g : box.mesh.neighbors[f]) {
             const auto across = static_cast<std::size_t>(g);
             const std::int32_t beyond = box.labels[across];
