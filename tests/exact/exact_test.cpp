@@ -1,0 +1,103 @@
+#include "exact/exact.h"
+
+#include "datasets/generate.h"
+#include "mesh/work_mesh.h"
+#include "runtime/parallel.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+#include <string>
+
+namespace quadseg::exact {
+namespace {
+
+struct Found {
+    ExactSurfaces surfaces;
+    std::vector<std::int32_t> labels;  ///< input order
+    double agreement = 0;              ///< share of labelled faces whose region's majority surface is their own
+    std::size_t regions = 0;
+};
+
+Found run(const datasets::Generated& part, int threads = 0) {
+    Found found;
+    const runtime::RunControl control(nullptr);
+    runtime::in_arena(threads, [&] {
+        const mesh::WorkMesh mesh = mesh::build_work_mesh(part.mesh.view(), control);
+        found.surfaces = find_exact_surfaces(mesh, control);
+        found.labels = mesh::labels_to_input(mesh, found.surfaces.labels);
+    });
+    std::map<std::int32_t, std::map<std::int32_t, std::size_t>> overlap;
+    for (std::size_t f = 0; f < found.labels.size(); ++f) ++overlap[found.labels[f]][part.truth[f]];
+    std::size_t right = 0, labelled = 0;
+    std::set<std::int32_t> truths;
+    for (const auto& [label, counts] : overlap) {
+        if (label < 0) continue;
+        ++found.regions;
+        for (const auto& [truth, count] : counts) labelled += count;
+        std::size_t best = 0;
+        std::int32_t surface = -1;
+        for (const auto& [truth, count] : counts) {
+            if (count > best) {
+                best = count;
+                surface = truth;
+            }
+        }
+        if (truths.insert(surface).second) right += best;  // a surface found in pieces counts once
+    }
+    found.agreement = static_cast<double>(right) / static_cast<double>(labelled);
+    return found;
+}
+
+class ExactParts : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ExactParts, EveryTrueSurfaceIsFound) {
+    const datasets::Generated part = datasets::generate(GetParam(), 12000);
+    const Found found = run(part);
+    // General quadrics are left to the flow that groups what has no direct type.
+    const auto direct = std::count_if(part.surfaces.begin(), part.surfaces.end(), [](const datasets::TrueSurface& t) {
+        return t.surface.type <= SurfaceType::torus;
+    });
+    EXPECT_GE(found.agreement, 0.999);
+    EXPECT_GE(found.surfaces.covered, 0.95);
+    EXPECT_EQ(found.regions, static_cast<std::size_t>(direct));
+}
+
+TEST_P(ExactParts, TypesAndRadiiAreTheTrueOnes) {
+    const datasets::Generated part = datasets::generate(GetParam(), 12000, 0, 7);
+    const runtime::RunControl control(nullptr);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(part.mesh.view(), control);
+    const ExactSurfaces found = find_exact_surfaces(mesh, control);
+    std::size_t right = 0, faces = 0;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        if (found.labels[f] < 0) continue;
+        const Surface& s = found.surfaces[static_cast<std::size_t>(found.labels[f])];
+        const Surface& truth = part.surfaces[static_cast<std::size_t>(part.truth[mesh.input_face[f]])].surface;
+        ++faces;
+        right += s.type == truth.type && std::abs(s.radius / mesh.frame.scale - truth.radius) <= 1e-6 * part.diagonal;
+    }
+    EXPECT_GE(right, faces * 99 / 100);
+}
+
+TEST_P(ExactParts, TheSameAtAnyThreadCount) {
+    const datasets::Generated part = datasets::generate(GetParam(), 4000);
+    const Found one = run(part, 1);
+    for (const int threads : {2, 3}) EXPECT_EQ(one.labels, run(part, threads).labels);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, ExactParts, ::testing::Values("plate", "shaft", "flange"),
+                         [](const auto& name) { return std::string(name.param); });
+
+TEST(ExactSurfaces, StopsWhenCancelled) {
+    const datasets::Generated part = datasets::generate("plate", 4000);
+    const runtime::RunControl running(nullptr);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(part.mesh.view(), running);
+    Context context;
+    context.cancel();
+    const runtime::RunControl stopped(&context);
+    EXPECT_THROW(find_exact_surfaces(mesh, stopped), runtime::Stopped);
+}
+
+}  // namespace
+}  // namespace quadseg::exact
