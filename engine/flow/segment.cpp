@@ -4,6 +4,7 @@
 #include "flow/dispatch.h"
 #include "flow/finish.h"
 #include "flow/flow.h"
+#include "flow/project.h"
 #include "mesh/features.h"
 #include "mesh/work_mesh.h"
 #include "runtime/parallel.h"
@@ -77,6 +78,7 @@ Segmentation segment_in_arena(const MeshView& view, const Options& options, cons
         control.report(Phase::post, 0.9, flow.regions);
         const double coarse = flow.coarse_seconds;
         result = flow::finish(input, std::move(flow));
+        if (options.project) flow::UnusedVertices(mesh, view.positions).restore(result.projected);
         result.seconds.prepare = prepared;
         result.seconds.coarse = coarse;
         result.seconds.fine = flowed - prepared - coarse;

@@ -2,8 +2,11 @@
 #include <quadseg/segmenter.h>
 
 #include "flow/dispatch.h"
+#include "flow/final_surfaces.h"
 #include "flow/finish.h"
 #include "flow/paper_loop.h"
+#include "flow/project.h"
+#include "flow/smooth_borders.h"
 #include "mesh/features.h"
 #include "mesh/work_mesh.h"
 #include "runtime/parallel.h"
@@ -38,6 +41,7 @@ struct Segmenter::Impl {
         const runtime::RunControl control(&context);
         in_arena([&] {
             mesh = mesh::build_work_mesh(view, control);
+            unused = flow::UnusedVertices(mesh, view.positions);
             if (options.feature_angle > 0) features = mesh::find_feature_edges(mesh, options.feature_angle, control);
             loop.emplace(flow_input(control));
             loop->start_from_components();
@@ -78,7 +82,23 @@ struct Segmenter::Impl {
         update_labels();
     }
 
-    void update_labels() { input_labels = mesh::labels_to_input(mesh, loop->state().labels); }
+    void update_labels() {
+        input_labels = mesh::labels_to_input(mesh, loop->state().labels);
+        classified.reset();
+    }
+
+    /// The current partition as a flow returns it, with the surfaces that the last run verified while they hold.
+    flow::FlowResult current() const {
+        if (last_run && last_run->labels == loop->state().labels) return *last_run;
+        flow::FlowResult flow;
+        flow.labels = loop->state().labels;
+        flow.regions = loop->state().regions();
+        return flow;
+    }
+
+    std::vector<flow::FinalSurface> surfaces(const flow::FlowResult& flow, const runtime::RunControl& control) const {
+        return flow::final_surfaces(flow_input(control), partition::region_faces(flow.labels, flow.regions), flow);
+    }
 
     /// Splits regions at borders and features where they need it; true when the labels stayed as they were.
     bool adopt(partition::Labels labels) {
@@ -132,7 +152,9 @@ struct Segmenter::Impl {
     std::optional<flow::VariationalLoop> loop;
     std::vector<flow::LoopState> history;
     std::vector<std::int32_t> input_labels;
-    std::optional<flow::FlowResult> last_run;  ///< holds for as long as the labels are its own
+    flow::UnusedVertices unused;
+    std::optional<std::vector<flow::FinalSurface>> classified;  ///< of the current labels
+    std::optional<flow::FlowResult> last_run;                   ///< holds for as long as the labels are its own
 };
 
 Segmenter::Segmenter(const MeshView& mesh, const Options& options, Context* context) {
@@ -220,15 +242,34 @@ double Segmenter::relax(int iterations) {
 }
 
 void Segmenter::smooth() {
-    reject("smoothing is not available in this build");
+    impl_->change([&](const runtime::RunControl& control) {
+        flow::FlowResult flow = impl_->current();
+        const auto surfaces = impl_->classified ? *impl_->classified : impl_->surfaces(flow, control);
+        const bool changed = flow::smooth_borders(impl_->flow_input(control), flow, surfaces);
+        control.check();
+        if (changed) impl_->adopt(std::move(flow.labels));
+    });
 }
 
 void Segmenter::classify() {
-    reject("classification is not available in this build");
+    impl_->in_arena([&] {
+        const runtime::RunControl control(&impl_->context);
+        control.check();
+        impl_->classified = impl_->surfaces(impl_->current(), control);
+    });
 }
 
 std::vector<double> Segmenter::project() const {
-    reject("projection is not available in this build");
+    std::vector<double> projected;
+    impl_->in_arena([&] {
+        const runtime::RunControl control(&impl_->context);
+        control.check();
+        const flow::FlowResult flow = impl_->current();
+        const auto surfaces = impl_->classified ? *impl_->classified : impl_->surfaces(flow, control);
+        projected = flow::projected_positions(impl_->flow_input(control), flow.labels, surfaces);
+    });
+    impl_->unused.restore(projected);
+    return projected;
 }
 
 bool Segmenter::undo() {
@@ -240,18 +281,13 @@ bool Segmenter::undo() {
 }
 
 Segmentation Segmenter::result() const {
-    flow::FlowResult flow;
-    if (impl_->last_run && impl_->last_run->labels == impl_->loop->state().labels) {
-        flow = *impl_->last_run;
-    } else {
-        flow.labels = impl_->loop->state().labels;
-        flow.regions = region_count();
-    }
+    flow::FlowResult flow = impl_->current();
     Segmentation result;
     runtime::in_arena(impl_->context.threads(), [&] {
         result = flow::finish(impl_->flow_input(impl_->never), std::move(flow));
         result.threads = runtime::arena_threads();
     });
+    impl_->unused.restore(result.projected);
     return result;
 }
 
