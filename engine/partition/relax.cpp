@@ -1,9 +1,8 @@
 #include "partition/relax.h"
 
-#include "partition/band_cut.h"
+#include "partition/border_cut.h"
 #include "quadric/ladder.h"
 #include "runtime/parallel.h"
-#include "runtime/per_thread.h"
 
 #include <algorithm>
 #include <array>
@@ -17,6 +16,7 @@ namespace {
 
 constexpr std::size_t face_grain = 8192;
 constexpr std::size_t work_grain = 1024;
+constexpr std::size_t region_grain = 64;
 constexpr int most_sweeps = 200;
 constexpr std::int32_t orphan = -2;
 /// Energy densities below this differ by rounding only.
@@ -51,8 +51,6 @@ class Relaxer {
                     repair_connectivity();
                 }
                 best = labels_;
-                moments_ = {};
-                fitted_labels_ = {};
             }
             if (options_.steps >= 0) {
                 std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
@@ -94,8 +92,8 @@ class Relaxer {
         return g < 0 ? -1 : labels_[static_cast<std::size_t>(g)];
     }
 
-    /// Brings the moments of the changed regions up to date face by face and fits plane or quadric to them.
-    void refit_from_moments() {
+    /// Brings the moments of the regions up to date, face by face that changed.
+    void update_moments() {
         struct Change {
             std::int32_t region;
             std::uint32_t face;
@@ -111,20 +109,30 @@ class Relaxer {
         std::sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
             return a.region != b.region ? a.region < b.region : a.face < b.face;
         });
-        runtime::parallel_blocks(count_, 64, [&](std::size_t begin, std::size_t end) {
-            control_.check();
-            auto change = std::lower_bound(changes.begin(), changes.end(), begin, [](const Change& c, std::size_t r) {
-                return static_cast<std::size_t>(c.region) < r;
+        const auto first_of = [&](std::size_t r) {
+            return std::lower_bound(changes.begin(), changes.end(), r, [](const Change& c, std::size_t region) {
+                return static_cast<std::size_t>(c.region) < region;
             });
+        };
+        runtime::parallel_blocks(count_, region_grain, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (auto change = first_of(begin), last = first_of(end); change != last; ++change) {
+                MergeRegion& region = moments_[static_cast<std::size_t>(change->region)];
+                const std::size_t f = change->face;
+                quadric::accumulate(region.moments, mesh_.corner(f, 0) - region.origin,
+                                    mesh_.corner(f, 1) - region.origin, mesh_.corner(f, 2) - region.origin,
+                                    mesh_.normals[f], change->sign * mesh_.areas[f]);
+            }
+        });
+    }
+
+    void refit_from_moments() {
+        update_moments();
+        runtime::parallel_blocks(count_, region_grain, [&](std::size_t begin, std::size_t end) {
+            control_.check();
             for (std::size_t r = begin; r < end; ++r) {
                 if (dirty_[r] == 0) continue;
-                MergeRegion& region = moments_[r];
-                for (; change != changes.end() && static_cast<std::size_t>(change->region) == r; ++change) {
-                    const std::size_t f = change->face;
-                    quadric::accumulate(region.moments, mesh_.corner(f, 0) - region.origin,
-                                        mesh_.corner(f, 1) - region.origin, mesh_.corner(f, 2) - region.origin,
-                                        mesh_.normals[f], change->sign * mesh_.areas[f]);
-                }
+                const MergeRegion& region = moments_[r];
                 const MomentFit fit =
                     options_.moment_fit ? options_.moment_fit(region.moments) : plane_or_quadric(region.moments);
                 result_.fits[r].proxy = {region.origin, fit.c, gradient_floor};
@@ -132,6 +140,25 @@ class Relaxer {
             }
         });
         sum_energy();
+    }
+
+    /// A region whose moments already say that it is plane enough needs no look at its faces, of which it may have
+    /// very many.
+    bool fit_plane_from_moments(std::size_t r) {
+        const MergeRegion& region = moments_[r];
+        const double area = region.moments.total_area;
+        const double tolerance = options_.fit.plane_tolerance * (options_.fit.plane_tolerance_per_area ? area : 1);
+        const quadric::LadderFit plane = quadric::fit_ladder(region.moments, options_.fit.weight, false);
+        if (!(area > 0) || plane.model != quadric::LadderModel::plane) return false;
+        const quadric::TriangleEnergy e = quadric::moment_energy(plane.c, region.moments);
+        const quadric::TriangleEnergy energy{std::max(0.0, e.distance), std::max(0.0, e.normal)};
+        if (!(energy.hybrid(options_.fit.weight) <= tolerance)) return false;
+        quadric::RegionFit& fit = result_.fits[r];
+        fit = {};
+        fit.proxy = {region.origin, plane.c, 1e-6};
+        fit.energy = energy;
+        fit.total = energy.hybrid(options_.fit.weight);
+        return true;
     }
 
     MomentFit plane_or_quadric(const quadric::Moments& m) const {
@@ -174,9 +201,12 @@ class Relaxer {
         std::sort(work.begin(), work.end(), [&](std::uint32_t a, std::uint32_t b) {
             return regions_.size(a) != regions_.size(b) ? regions_.size(a) > regions_.size(b) : a < b;
         });
+        const bool moments_known = options_.moment_steps > 0;
+        if (moments_known) update_moments();
         runtime::parallel_for(work.size(), 1, [&](std::size_t i) {
             control_.check();
             const std::size_t r = work[i];
+            if (moments_known && fit_plane_from_moments(r)) return;
             GatheredRegion gathered;
             gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
             result_.fits[r] = quadric::fit_region(gathered.soup(), options_.fit);
@@ -219,114 +249,15 @@ class Relaxer {
         return border;
     }
 
-    /// The faces of a pair of regions near their border, and where its cheapest cut runs.
-    struct Band {
-        std::int32_t a = 0, b = 0;
-        std::vector<std::uint32_t> faces;  ///< at the border first; after the cut those that change sides
-    };
-
-    std::vector<Band> bands() {
-        struct Key {
-            std::int32_t a, b;
-            std::uint32_t face;
-        };
-        std::vector<Key> keys;
-        for (const std::uint32_t f : border_faces()) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t other = label_across(f, k);
-                if (other >= 0 && other != labels_[f]) {
-                    keys.push_back({std::min(other, labels_[f]), std::max(other, labels_[f]), f});
-                }
-            }
-        }
-        std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
-            return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.face < y.face;
-        });
-        std::vector<Band> result;
-        for (const Key& key : keys) {
-            if (result.empty() || result.back().a != key.a || result.back().b != key.b) {
-                result.push_back({key.a, key.b, {}});
-            }
-            std::vector<std::uint32_t>& faces = result.back().faces;
-            if (faces.empty() || faces.back() != key.face) faces.push_back(key.face);
-        }
-        return result;
-    }
-
-    struct CutScratch {
-        BandCut cut;
-        std::vector<std::int32_t> node;  ///< of a face; −1: not in the band
-    };
-
-    void cut_band(Band& band, CutScratch& scratch) const {
-        std::vector<std::int32_t>& node = scratch.node;
-        if (node.empty()) node.assign(labels_.size(), -1);
-        for (std::size_t i = 0; i < band.faces.size(); ++i) node[band.faces[i]] = static_cast<std::int32_t>(i);
-        std::size_t ring_begin = 0;
-        for (int ring = 0; ring < options_.cut_rings; ++ring) {
-            const std::size_t ring_end = band.faces.size();
-            for (std::size_t i = ring_begin; i < ring_end; ++i) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const std::int32_t g = passage_.across(band.faces[i], k);
-                    if (g < 0) continue;
-                    const auto u = static_cast<std::size_t>(g);
-                    if (node[u] >= 0 || (labels_[u] != band.a && labels_[u] != band.b)) continue;
-                    node[u] = static_cast<std::int32_t>(band.faces.size());
-                    band.faces.push_back(static_cast<std::uint32_t>(u));
-                }
-            }
-            ring_begin = ring_end;
-        }
-        scratch.cut.clear();
-        for (const std::uint32_t f : band.faces) {
-            double in_a = energy(f, band.a), in_b = energy(f, band.b);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t g = passage_.across(f, k);
-                if (g < 0 || node[static_cast<std::size_t>(g)] >= 0) continue;
-                const double price = options_.border_price * edge_length(f, k);
-                if (labels_[static_cast<std::size_t>(g)] == band.a) in_b += price;
-                if (labels_[static_cast<std::size_t>(g)] == band.b) in_a += price;
-            }
-            scratch.cut.add_node(in_a, in_b);
-        }
-        for (std::size_t i = 0; i < band.faces.size(); ++i) {
-            const std::size_t f = band.faces[i];
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t g = passage_.across(f, k);
-                if (g < 0) continue;
-                const std::int32_t j = node[static_cast<std::size_t>(g)];
-                if (j <= static_cast<std::int32_t>(i)) continue;
-                const auto& back = mesh_.neighbors[static_cast<std::size_t>(g)];
-                const auto slot = static_cast<std::size_t>(
-                    std::find(back.begin(), back.end(), static_cast<std::int32_t>(f)) - back.begin());
-                if (slot < 3) {
-                    scratch.cut.add_edge(i, k, static_cast<std::size_t>(j), slot,
-                                         options_.border_price * edge_length(f, k));
-                }
-            }
-        }
-        const std::vector<std::uint8_t>& side = scratch.cut.solve();
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < band.faces.size(); ++i) {
-            const std::uint32_t f = band.faces[i];
-            node[f] = -1;
-            if (labels_[f] != (side[i] == 0 ? band.a : band.b)) band.faces[kept++] = f;
-        }
-        band.faces.resize(kept);
-    }
-
     /// All pairs are cut at once; a cut holds unless another one before it changed a face that it reckoned with.
     bool cut_borders() {
-        std::vector<Band> cuts = bands();
-        runtime::PerThread<CutScratch> scratch;
-        runtime::parallel_for(cuts.size(), 1, [&](std::size_t i) {
-            control_.check();
-            cut_band(cuts[i], scratch.local());
-        });
+        const std::vector<BorderCut> cuts = partition::cut_borders(
+            passage_, labels_, result_.fits, {options_.fit.weight, options_.border_price, options_.cut_rings},
+            border_faces(), control_);
         ++sweep_stamp_;
         std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
         bool moved = false;
-        for (const Band& band : cuts) {
+        for (const BorderCut& cut : cuts) {
             const auto touched = [&](std::uint32_t f) {
                 if (stamp_[f] == sweep_stamp_) return true;
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -335,12 +266,12 @@ class Relaxer {
                 }
                 return false;
             };
-            if (band.faces.empty() || std::any_of(band.faces.begin(), band.faces.end(), touched)) continue;
-            for (const std::uint32_t f : band.faces) {
-                labels_[f] = labels_[f] == band.a ? band.b : band.a;
+            if (cut.faces.empty() || std::any_of(cut.faces.begin(), cut.faces.end(), touched)) continue;
+            for (const std::uint32_t f : cut.faces) {
+                labels_[f] = labels_[f] == cut.a ? cut.b : cut.a;
                 stamp_[f] = sweep_stamp_;
             }
-            dirty_[static_cast<std::size_t>(band.a)] = dirty_[static_cast<std::size_t>(band.b)] = 1;
+            dirty_[static_cast<std::size_t>(cut.a)] = dirty_[static_cast<std::size_t>(cut.b)] = 1;
             moved = true;
         }
         return moved;
