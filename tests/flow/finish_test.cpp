@@ -140,26 +140,46 @@ TEST(Finish, TheSameForAnEnergyFlowWithoutVerifiedSurfaces) {
     expect_consistent(part.mesh.view(), segment(part.mesh.view(), options));
 }
 
-TEST(Finish, ParametersAreTheTrueOnes) {
-    const datasets::Generated part = datasets::generate("plate", 20000);
-    const Segmentation result = segment(part.mesh.view());
-    // Each region against the true surface that covers most of it.
-    std::vector<std::map<std::int32_t, std::size_t>> votes(result.regions.size());
-    for (std::size_t f = 0; f < part.truth.size(); ++f)
-        ++votes[static_cast<std::size_t>(result.labels[f])][part.truth[f]];
-    std::size_t right = 0;
-    for (const Region& r : result.regions) {
-        const auto& v = votes[static_cast<std::size_t>(r.id)];
-        const auto best =
-            std::max_element(v.begin(), v.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-        const Surface& truth = part.surfaces[static_cast<std::size_t>(best->first)].surface;
-        if (truth.type != r.surface.type) continue;
-        const double turned = norm(cross(to_vec3(truth.axis), to_vec3(r.surface.axis)));
-        if (truth.type != SurfaceType::sphere && turned > 1e-6) continue;
-        if (std::abs(truth.radius - r.surface.radius) > 1e-6 * part.diagonal) continue;
-        ++right;
+/// finish() on the true partition, whose surfaces it has to find by itself.
+struct TruePartition {
+    mesh::WorkMesh mesh;
+    Options options;
+    Segmentation result;
+};
+
+TruePartition finish_truth(const datasets::Generated& part, const Options& options = {}) {
+    const runtime::RunControl free_run(nullptr);
+    TruePartition run{mesh::build_work_mesh(part.mesh.view(), free_run), options, {}};
+    flow::FlowResult flow;
+    flow.labels = mesh::labels_from_input(run.mesh, part.truth);
+    flow.regions = part.surfaces.size();
+    run.result = flow::finish({run.mesh, nullptr, run.options, free_run}, std::move(flow));
+    return run;
+}
+
+TEST(Finish, TypesAndParametersOfTheTruePartitionAreTheTrueOnes) {
+    for (const char* name : {"plate", "shaft", "flange", "quadrics", "rounded_octahedron"}) {
+        const datasets::Generated part = datasets::generate(name, 20000);
+        const TruePartition run = finish_truth(part);
+        std::size_t right = 0;
+        for (std::size_t r = 0; r < part.surfaces.size(); ++r) {
+            const Surface &truth = part.surfaces[r].surface, &found = run.result.regions[r].surface;
+            SCOPED_TRACE(std::string(name) + " region " + std::to_string(r) + ": " + to_string(truth.type) + " as " +
+                         to_string(found.type));
+            EXPECT_LT(run.result.regions[r].max, 1e-6);
+            if (truth.type != found.type) continue;
+            ++right;
+            EXPECT_NEAR(found.radius, truth.radius, 1e-6 * part.diagonal);
+            EXPECT_NEAR(found.minor_radius, truth.minor_radius, 1e-6 * part.diagonal);
+            EXPECT_NEAR(found.half_angle, truth.half_angle, 1e-6);
+            const bool directed = truth.type == SurfaceType::plane || truth.type == SurfaceType::cylinder ||
+                                  truth.type == SurfaceType::cone || truth.type == SurfaceType::torus;
+            if (directed) {
+                EXPECT_LT(norm(cross(to_vec3(truth.axis), to_vec3(found.axis))), 1e-6);
+            }
+        }
+        EXPECT_GE(right * 20, part.surfaces.size() * 19) << name;
     }
-    EXPECT_GE(right * 20, result.regions.size() * 19);
 }
 
 TEST(Finish, ThePaperNamesPlanesSpheresAndCylinders) {
