@@ -56,6 +56,7 @@ class NoisyFlow {
                 relax();
             }
             if (!result_.partial) clean_up();
+            if (!result_.partial) measure_noise();
         } catch (const runtime::Stopped&) {
             result_.partial = true;
         }
@@ -120,8 +121,8 @@ class NoisyFlow {
         rules.weight = weight_;
         rules.price = complete_price * evidence_;
         // Chance has a place for a crumb at every face; under strong noise true small surfaces look no different.
-        rules.region_price =
-            std::min(1.5, 0.13 / ratio_) * evidence_ * std::log(static_cast<double>(mesh_.face_count()));
+        rules.region_price = 1.5 * std::min(1.0, std::pow(0.16 / ratio_, 1.5)) * evidence_ *
+                             std::log(static_cast<double>(mesh_.face_count()));
         rules.border_reward = border_share * border_price_;
         rules.misfit = misfit_;
         count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), rules, control_);
@@ -136,6 +137,22 @@ class NoisyFlow {
         const std::size_t before = count_;
         count_ = partition::absorb_small(passage_, labels_, count_, fits_, options, control_);
         if (count_ != before) relax();
+    }
+
+    /// The distances that large regions leave tell the noise more truly than the raw mesh did: they do not saturate.
+    /// (The prices stay with the first estimate: raised by this one they cost small regions and win nothing.)
+    void measure_noise() {
+        const double large = 128 * mesh_.total_area / static_cast<double>(mesh_.face_count());
+        std::vector<double> mean_squares;
+        for (std::size_t r = 0; r < count_; ++r) {
+            const double area = regions_[r].moments.total_area;
+            if (area >= large) mean_squares.push_back(fits_[r].energy.distance / area);
+        }
+        if (mean_squares.empty()) return;
+        const auto middle = mean_squares.begin() + static_cast<std::ptrdiff_t>(mean_squares.size() / 2);
+        std::nth_element(mean_squares.begin(), middle, mean_squares.end());
+        // ∫d² over triangles of independent vertices is half of what the vertices have.
+        result_.noise = std::sqrt(2 * *middle);
     }
 
     void relax() {
