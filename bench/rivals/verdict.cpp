@@ -17,7 +17,8 @@ std::vector<std::string> faults(const Traits& traits, std::size_t regions, const
         result.push_back("unlabelled faces: " + std::to_string(100 * score.unlabelled_area) + " % of the area");
     }
     if (score.unlabelled_area > 0.9) result.emplace_back("nearly nothing labelled");
-    if (!(score.energy_density < blind.energy_density)) {
+    // Shapes without orientation join faces of opposite normals: near in distance, far in energy.
+    if (!(score.energy_density < blind.energy_density) && !(score.rms < 0.9 * blind.rms)) {
         result.emplace_back("no better than regions that look at no geometry: labels of other faces?");
     }
     return result;

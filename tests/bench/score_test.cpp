@@ -124,8 +124,14 @@ TEST(VerdictOnNumbers, NotANumberIsNot) {
     score.regions = 1;
     score.energy_density = 1;
     blind.energy_density = 2;
+    blind.rms = 1;
     const Traits traits{false, false, false};
     EXPECT_TRUE(faults(traits, 0, score, blind).empty());
+    score.energy_density = 3;  // one of the two is enough
+    EXPECT_TRUE(faults(traits, 0, score, blind).empty());
+    score.rms = 1;
+    EXPECT_FALSE(faults(traits, 0, score, blind).empty());
+    score.energy_density = 1;
     score.rms = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(faults(traits, 0, score, blind).empty());
 }
