@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 
 quadseg_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libopenmesh-dev libboost-dev
-    libfast-float-dev libcli11-dev nlohmann-json3-dev libpng-dev libgtest-dev)
+    libfast-float-dev libcli11-dev nlohmann-json3-dev libpng-dev libembree-dev libgtest-dev)
 
 install_packages() {
     local missing=() package

@@ -12,6 +12,7 @@ using Command = std::function<int()>;
 Command add_segment(CLI::App& app);
 Command add_info(CLI::App& app);
 Command add_simplify(CLI::App& app);
+Command add_compare(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_batch(CLI::App& app);
 Command add_batch_item(CLI::App& app);
