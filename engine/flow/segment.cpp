@@ -107,6 +107,10 @@ Segmentation segment(const MeshView& mesh, const Options& options, Context* cont
         result = segment_in_arena(mesh, options, control);
         result.threads = runtime::arena_threads();
     });
+    // The flows know that they were stopped; why, the context knows best.
+    if (result.partial && context) {
+        result.stop = context->cancelled() ? StopReason::cancelled : StopReason::deadline;
+    }
     result.peak_bytes = peak_resident_bytes();
     return result;
 }
