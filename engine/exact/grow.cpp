@@ -10,7 +10,7 @@ namespace quadseg::exact {
 
 namespace {
 
-constexpr std::size_t fit_sample = 2000;
+constexpr std::size_t fit_sample = 800;
 constexpr int most_refits = 6;
 
 double quantile(std::vector<double>& values, double share) {

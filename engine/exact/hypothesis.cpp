@@ -256,8 +256,9 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     return best;
 }
 
-std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
-                                      const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
+Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
+                     const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
+    Finding finding;
     const double tolerance = options.loose ? scene.tolerances.loose_fit : scene.tolerances.fit;
     // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
     const bool strips =
@@ -273,7 +274,10 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, co
             Candidate candidate = grow(scene, surface, patch.up_to(facets), options.most_step, marks);
             candidate.loose = options.loose;
             if (candidate.faces.size() * 2 < patch.facet_end[facets - 1]) return std::nullopt;
-            if (candidate.gap > most_gap && !at_precision(scene, candidate)) return std::nullopt;
+            if (candidate.gap > most_gap && !at_precision(scene, candidate)) {
+                if (candidate.faces.size() > finding.refused.size()) finding.refused = std::move(candidate.faces);
+                return std::nullopt;
+            }
             return candidate;
         };
         const std::size_t gate = std::min(sizes.gate, available);
@@ -294,14 +298,13 @@ std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, co
         }
         return std::nullopt;
     };
-    if (!options.rows_only) {
-        if (std::optional<Candidate> found = try_patch({}, disc_sizes)) return found;
-    }
-    if (!strips) return std::nullopt;
+    if (!options.rows_only) finding.candidate = try_patch({}, disc_sizes);
+    if (finding.candidate || !strips) return finding;
     for (const PatchShape& row : rows_through(scene, seed)) {
-        if (std::optional<Candidate> found = try_patch(row, row_sizes)) return found;
+        finding.candidate = try_patch(row, row_sizes);
+        if (finding.candidate) break;
     }
-    return std::nullopt;
+    return finding;
 }
 
 }  // namespace quadseg::exact

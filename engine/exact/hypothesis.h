@@ -37,9 +37,16 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
 std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance, bool coarse,
                                Marks& marks);
 
-/// Tries discs and rows of facets around a seed; grows the first surface that holds. Empty: no surface, or one that an
-/// honest look at its border refuses.
-std::optional<Candidate> find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
-                                      const std::function<bool(std::uint32_t)>& usable, Marks& marks);
+struct Finding {
+    std::optional<Candidate> candidate;
+    /// Faces of the largest surface that was grown and then refused for its border: other seeds on it would lead to it
+    /// again.
+    std::vector<std::uint32_t> refused;
+};
+
+/// Tries discs and rows of facets around a seed; grows the first surface that holds. No candidate: no surface, or one
+/// that an honest look at its border refuses.
+Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
+                     const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
 }  // namespace quadseg::exact

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 namespace quadseg::exact {
 
@@ -9,6 +10,8 @@ namespace {
 
 constexpr double gentle_least = 0.3 * std::numbers::pi / 180, gentle_most = 30 * std::numbers::pi / 180;
 constexpr double mostly = 0.5;
+/// Fewer strips in a row than this are planes that someone meant.
+constexpr std::size_t least_strips = 6;
 /// Amid free faces a surface needs as many facets as this to be believed.
 constexpr std::size_t believable_facets = 12;
 
@@ -17,7 +20,13 @@ struct RegionBorder {
     double to_strips = 0;  ///< gentle fold to a planar region
     double to_free = 0;    ///< smooth or gentle to a free face
     std::size_t facets = 0;
+    double area = 0;
 };
+
+/// Strips of one tessellation are alike; a bevel beside a face is not.
+bool alike(double area_a, double area_b) {
+    return std::max(area_a, area_b) <= 2.5 * std::min(area_a, area_b);
+}
 
 std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& state) {
     std::vector<RegionBorder> borders(state.surface.size());
@@ -29,6 +38,9 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
             last_facet[static_cast<std::size_t>(r)] = static_cast<std::int32_t>(facet);
             ++borders[static_cast<std::size_t>(r)].facets;
         }
+    }
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        if (state.region[f] >= 0) borders[static_cast<std::size_t>(state.region[f])].area += scene.mesh.areas[f];
     }
     for (std::size_t f = 0; f < state.region.size(); ++f) {
         if (state.region[f] < 0) continue;
@@ -53,17 +65,52 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
     return borders;
 }
 
+/// For every strip the number of strips that hang together with it over gentle folds.
+std::vector<std::size_t> row_sizes(const Scene& scene, const Explained& state, const std::vector<RegionBorder>& borders,
+                                   const std::vector<std::uint8_t>& strip) {
+    std::vector<std::uint32_t> parent(strip.size());
+    std::iota(parent.begin(), parent.end(), 0U);
+    const auto find = [&](std::uint32_t r) {
+        while (parent[r] != r) r = parent[r] = parent[parent[r]];
+        return r;
+    };
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        const std::int32_t a = state.region[f];
+        if (a < 0 || strip[static_cast<std::size_t>(a)] == 0) continue;
+        for (const std::int32_t g : scene.mesh.neighbors[f]) {
+            if (g < 0) continue;
+            const std::int32_t b = state.region[static_cast<std::size_t>(g)];
+            if (b <= a || strip[static_cast<std::size_t>(b)] == 0) continue;
+            if (!alike(borders[static_cast<std::size_t>(a)].area, borders[static_cast<std::size_t>(b)].area)) continue;
+            if (dihedral(scene.mesh, f, static_cast<std::size_t>(g)) > gentle_most) continue;
+            const std::uint32_t x = find(static_cast<std::uint32_t>(a)), y = find(static_cast<std::uint32_t>(b));
+            parent[std::max(x, y)] = std::min(x, y);
+        }
+    }
+    std::vector<std::size_t> count(strip.size(), 0);
+    for (std::uint32_t r = 0; r < strip.size(); ++r) {
+        if (strip[r] != 0) ++count[find(r)];
+    }
+    std::vector<std::size_t> size(strip.size(), 0);
+    for (std::uint32_t r = 0; r < strip.size(); ++r) size[r] = count[find(r)];
+    return size;
+}
+
 }  // namespace
 
 void release_doubtful(const Scene& scene, Explained& state) {
     const std::vector<RegionBorder> borders = measure_borders(scene, state);
     std::vector<std::uint8_t> doubtful(borders.size(), 0);
+    std::vector<std::uint8_t> strip(borders.size(), 0);
     for (std::size_t r = 0; r < borders.size(); ++r) {
         const RegionBorder& b = borders[r];
         const bool plane = state.surface[r].type == SurfaceType::plane;
-        const bool strip = plane && b.to_strips + b.to_free > mostly * b.perimeter && b.to_strips > 0.25 * b.perimeter;
-        const bool crumb = b.to_free > mostly * b.perimeter && b.facets < believable_facets;
-        doubtful[r] = strip || crumb ? 1 : 0;
+        strip[r] = plane && b.to_strips + b.to_free > mostly * b.perimeter && b.to_strips > 0.25 * b.perimeter ? 1 : 0;
+        doubtful[r] = b.to_free > mostly * b.perimeter && b.facets < believable_facets ? 1 : 0;
+    }
+    const std::vector<std::size_t> row = row_sizes(scene, state, borders, strip);
+    for (std::size_t r = 0; r < borders.size(); ++r) {
+        if (strip[r] != 0 && row[r] >= least_strips) doubtful[r] = 1;
     }
     for (std::int32_t& r : state.region) {
         if (r >= 0 && doubtful[static_cast<std::size_t>(r)] != 0) r = -1;

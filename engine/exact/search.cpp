@@ -41,7 +41,7 @@ class ChartSearch {
             scene_.control.check();
             const std::vector<std::uint32_t> seeds = take_seeds(next);
             if (seeds.empty()) break;
-            std::vector<std::optional<Candidate>> found(seeds.size());
+            std::vector<Finding> found(seeds.size());
             runtime::parallel_for(seeds.size(), 1, [&](std::size_t i) {
                 found[i] = find_surface(
                     scene_, seeds[i], options_,
@@ -51,11 +51,14 @@ class ChartSearch {
             bool any = false;
             for (std::size_t i = 0; i < seeds.size(); ++i) {
                 if (covered_[seeds[i]] == explained) continue;
-                if (found[i] && commit(std::move(*found[i]))) {
+                if (found[i].candidate && commit(std::move(*found[i].candidate))) {
                     any = true;
                     failures_ = 0;
                 } else {
                     hush(seeds[i]);
+                    for (const std::uint32_t f : found[i].refused) {
+                        if (scene_.chart[f] == chart_ && covered_[f] == 0) covered_[f] = quiet;
+                    }
                 }
             }
             at_once_ = any ? std::max<std::size_t>(1, at_once_ / 2) : std::min(most_seeds_at_once, at_once_ * 2);

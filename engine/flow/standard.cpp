@@ -13,6 +13,7 @@ namespace {
 
 /// Free-form faces are grouped by energy with a wide misfit: few and stable patches (PROTOTYPE_TRUTH.md 1.14: τ = .03).
 constexpr double freeform_misfit_angle = 14;
+constexpr double crease_degrees = 30;
 
 FlowResult group_freeform(const FlowInput& input, const partition::Labels& explained) {
     std::vector<std::uint8_t> active(explained.size());
@@ -21,7 +22,10 @@ FlowResult group_freeform(const FlowInput& input, const partition::Labels& expla
     FastOptions options = fast_options(input.options);
     options.misfit_angle = freeform_misfit_angle;
     options.active = active;
-    return run_fast(input, options);
+    if (input.features) return run_fast(input, options);
+    // On a clean mesh a crease is a border that the designer meant.
+    const mesh::FeatureEdges creases = mesh::find_feature_edges(input.mesh, crease_degrees, input.control);
+    return run_fast({input.mesh, &creases, input.options, input.control}, options);
 }
 
 }  // namespace
@@ -48,7 +52,12 @@ FlowResult run_standard(const FlowInput& input) {
     result.noise = exact.noise;
     if (std::find(result.labels.begin(), result.labels.end(), -1) == result.labels.end()) return result;
 
-    FlowResult rest = group_freeform(input, result.labels);
+    FlowResult rest;
+    try {
+        rest = group_freeform(input, result.labels);
+    } catch (const runtime::Stopped&) {
+        return run_fast(input, fast_options(input.options));
+    }
     const auto first = static_cast<std::int32_t>(result.regions);
     for (std::size_t f = 0; f < result.labels.size(); ++f) {
         if (result.labels[f] < 0) result.labels[f] = first + rest.labels[f];
