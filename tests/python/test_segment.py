@@ -61,7 +61,7 @@ def test_arrays_in_the_right_form_are_not_copied(can):
 def test_results_own_their_buffers(can):
     result = quadseg.segment(*can, project=True)
     # The base is a capsule around the C++ vector: nothing was copied into memory of NumPy.
-    for array in (result.labels, result.table, result.projected, result.merge_energies):
+    for array in (result.labels, result.table, result.projected):
         assert not array.flags.owndata and type(array.base).__name__ == "PyCapsule"
     labels, expected = result.labels, result.labels.copy()
     del result

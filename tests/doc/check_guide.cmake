@@ -1,0 +1,18 @@
+# Every file that the guide links to exists.
+file(READ ${GUIDE} text)
+# Brackets and semicolons mean something to CMake's lists.
+string(REPLACE "](" "LINK(" text "${text}")
+string(REGEX REPLACE "[][;]" "" text "${text}")
+string(REGEX MATCHALL "LINK\\([^)#:]+\\)" links "${text}")
+list(LENGTH links count)
+if(count LESS 5)
+    message(FATAL_ERROR "the guide links to ${count} files only: is this the guide?")
+endif()
+get_filename_component(folder ${GUIDE} DIRECTORY)
+foreach(link IN LISTS links)
+    string(REGEX REPLACE "^LINK\\((.*)\\)$" "\\1" path "${link}")
+    if(NOT EXISTS ${folder}/${path})
+        message(SEND_ERROR "the guide links to ${path}, which is not there")
+    endif()
+endforeach()
+message(STATUS "${count} links")
