@@ -4,9 +4,14 @@
 quadseg_packages=(g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libopenmesh-dev libboost-dev
     libfast-float-dev libcli11-dev nlohmann-json3-dev libpng-dev libembree-dev libgtest-dev)
 
+# The Python package, its tests and the API reference; the program does without.
+quadseg_test_packages=(python3-dev pybind11-dev python3-numpy python3-pytest python3-tqdm python3-meshio
+    python3-distributed python3-setuptools python3-wheel python3-pip doxygen)
+
+# install_packages [MORE...]
 install_packages() {
     local missing=() package
-    for package in "${quadseg_packages[@]}"; do
+    for package in "${quadseg_packages[@]}" "$@"; do
         dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
     done
     if [ ${#missing[@]} -eq 0 ]; then return; fi
