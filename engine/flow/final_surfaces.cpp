@@ -79,7 +79,8 @@ bool is_special(SurfaceType type) {
 /// Chooses the type of one region's surface on a small sample.
 class TypeChoice {
   public:
-    TypeChoice(const PointSet& p, const Surface& start, double floor) : p_(p), start_(start), floor_(floor) {
+    TypeChoice(const PointSet& p, const Surface& start, double floor, bool torus)
+        : p_(p), start_(start), floor_(floor), torus_(torus) {
         options_.iterations = 15;
     }
 
@@ -89,10 +90,15 @@ class TypeChoice {
         if (best_rms() <= floor_) return chosen();
         consider_general();
         // Types that stay far above what is reached already need no more than a few steps.
-        for (const SurfaceType type :
-             {SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone, SurfaceType::torus}) {
+        for (const SurfaceType type : {SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone}) {
             options_.hopeless = 2 * limit();
             consider(surface::fit(type, p_, options_));
+        }
+        // A torus is no quadric: it has to be meaningfully better than all of them.
+        const double better = std::max(floor_, best_rms() / equal_ratio);
+        if (torus_ && best_rms() > floor_) {
+            const SurfaceFit fit = torus(better);
+            if (fit.rms <= better) consider(fit);
         }
         return chosen();
     }
@@ -149,6 +155,7 @@ class TypeChoice {
     const PointSet p_;
     const Surface& start_;
     double floor_;
+    bool torus_;
     surface::FitOptions options_;
     std::vector<SurfaceFit> candidates_;
 };
@@ -255,7 +262,7 @@ class Finisher {
         const double tolerance = free_form ? std::max(floor, exact_tolerance) : floor;
         // The noise is known: what is farther off is free-form.
         const bool judged = free_form || (!paper_ && flow_.noise > 0);
-        TypeChoice choice(few.all(), own, floor);
+        TypeChoice choice(few.all(), own, floor, !paper_);  // the paper's proxies are quadrics
         const bool general_fails = judged && fails(own, few, 2 * tolerance);
         SurfaceFit fit = general_fails ? choice.torus(tolerance) : choice.run();
         const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
