@@ -64,7 +64,8 @@ double peak_operations() {
         }
         for (Lanes& sum : sums) benchmark::DoNotOptimize(sum);
     });
-    return 2.0 * rounds * chains * (sizeof(Lanes) / sizeof(double)) / seconds;
+    constexpr std::size_t lanes = sizeof(Lanes) / sizeof(double);
+    return 2.0 * rounds * static_cast<double>(chains * lanes) / seconds;
 }
 
 Machine measure() {

@@ -220,7 +220,7 @@ int run(const Arguments& a, const std::string& self) {
 }  // namespace
 }  // namespace quadseg::bench
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     CLI::App app{"Rivals on the same meshes: scored by one ruler, then timed. Exit code 1: a result was unsound"};
     quadseg::bench::Arguments arguments;
     app.add_option("meshes", arguments.meshes, "FILE:REGIONS ...")->required();
@@ -232,10 +232,8 @@ int main(int argc, char** argv) {
     app.add_option("--child", arguments.child)->group("");
     app.add_option("--prefix", arguments.prefix)->group("");
     CLI11_PARSE(app, argc, argv);
-    try {
-        return quadseg::bench::run(arguments, "/proc/self/exe");
-    } catch (const std::exception& error) {
-        std::cerr << "quadseg_rivals: " << error.what() << '\n';
-        return 2;
-    }
+    return quadseg::bench::run(arguments, "/proc/self/exe");
+} catch (const std::exception& error) {
+    std::cerr << "quadseg_rivals: " << error.what() << '\n';
+    return 2;
 }

@@ -49,6 +49,7 @@ class FileActions {
 // small and leave meshes to their children.
 ChildResult run_child(const std::vector<std::string>& arguments, const std::string& log, double time_limit) {
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     const FileActions actions(log);

@@ -47,7 +47,7 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     CLI::App app{"Runs the jobs of a manifest in fresh processes. Exit code 1: a job failed or ran out of time"};
     Arguments arguments;
     Places& places = arguments.places;
@@ -64,10 +64,8 @@ int main(int argc, char** argv) {
     app.add_option("--runs", arguments.runs, "Runs of each job instead of the manifest's number");
     CLI11_PARSE(app, argc, argv);
     if (places.meshes.empty()) places.meshes = arguments.out + "/meshes";
-    try {
-        return run(arguments);
-    } catch (const std::exception& error) {
-        std::cerr << "quadseg_tables: " << error.what() << '\n';
-        return 2;
-    }
+    return run(arguments);
+} catch (const std::exception& error) {
+    std::cerr << "quadseg_tables: " << error.what() << '\n';
+    return 2;
 }

@@ -1,21 +1,25 @@
 #include "bench/tables/manifest.h"
 
+#include <initializer_list>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 namespace quadseg::bench {
 namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void refuse(const std::string& what) {
-    throw std::invalid_argument("manifest: " + what);
+[[noreturn]] void refuse(std::initializer_list<std::string_view> words) {
+    std::string text = "manifest: ";
+    for (const std::string_view word : words) text += word;
+    throw std::invalid_argument(text);
 }
 
 /// A misspelt key would silently change what is measured.
 void only_known(const json& object, const std::set<std::string>& known, const std::string& where) {
     for (const auto& [key, value] : object.items()) {
-        if (!known.contains(key)) refuse("unknown key '" + key + "' in " + where);
+        if (!known.contains(key)) refuse({"unknown key '", key, "' in ", where});
     }
 }
 
@@ -43,7 +47,7 @@ MeshSource parse_mesh(const std::string& name, const json& object) {
     mesh.noise = object.value("noise", 0.0);
     mesh.seed = object.value("seed", std::uint64_t{1});
     mesh.stands_for = object.value("stands_for", "");
-    if (mesh.file.empty() == mesh.generator.empty()) refuse("mesh " + name + " needs a file or a generator");
+    if (mesh.file.empty() == mesh.generator.empty()) refuse({"mesh ", name, " needs a file or a generator"});
     return mesh;
 }
 
@@ -51,19 +55,20 @@ MeshSource parse_mesh(const std::string& name, const json& object) {
 std::vector<std::string> meshes_of(const json& object, Manifest& manifest, const std::string& where) {
     std::vector<std::string> result;
     for (const std::string& name : list(object, "mesh", {})) {
-        if (!manifest.meshes.contains(name)) refuse(where + " names the unknown mesh " + name);
+        if (!manifest.meshes.contains(name)) refuse({where, " names the unknown mesh ", name});
         const std::vector<std::string> sizes = list(object, "faces", {});
         if (sizes.empty()) result.push_back(name);
         for (const std::string& size : sizes) {
             MeshSource sized = manifest.meshes.at(name);
-            if (sized.generator.empty()) refuse(where + ": sizes of the file mesh " + name);
+            if (sized.generator.empty()) refuse({where, ": sizes of the file mesh ", name});
             sized.faces = std::stoul(size);
-            sized.name = name + "-" + size;
+            sized.name = name;
+            sized.name.append("-").append(size);
             result.push_back(sized.name);
             manifest.meshes.emplace(sized.name, sized);
         }
     }
-    if (result.empty()) refuse(where + " names no mesh");
+    if (result.empty()) refuse({where, " names no mesh"});
     return result;
 }
 
@@ -92,7 +97,7 @@ void add_comparison(const json& object, const Manifest& manifest, Table& table) 
     ComparisonRow row;
     row.model = object.at("model");
     row.mesh = object.at("mesh");
-    if (!manifest.meshes.contains(row.mesh)) refuse("table " + table.name + " names the unknown mesh " + row.mesh);
+    if (!manifest.meshes.contains(row.mesh)) refuse({"table ", table.name, " names the unknown mesh ", row.mesh});
     const json& paper = object.at("paper");
     row.paper_regions = paper.at("regions");
     for (std::size_t v = 0; v < 2; ++v) {
@@ -122,8 +127,9 @@ Table parse_table(const json& object, Manifest& manifest) {
     table.time_limit = object.value("time_limit", table.time_limit);
     table.scaling = object.value("scaling", false);
     table.variants = list(object, "variants", {});
-    if (!table.variants.empty() && table.variants.size() != 2) refuse("table " + table.name + " needs two variants");
-    if (object.contains("rows") != (table.variants.size() == 2)) refuse(table.name + ": rows and variants go together");
+    if (!table.variants.empty() && table.variants.size() != 2) refuse({"table ", table.name, " needs two variants"});
+    if (object.contains("rows") != (table.variants.size() == 2))
+        refuse({table.name, ": rows and variants go together"});
     for (const json& row : object.value("rows", json::array())) add_comparison(row, manifest, table);
     for (const json& job : object.value("jobs", json::array())) add_jobs(job, manifest, table);
     return table;
@@ -140,7 +146,7 @@ Manifest parse_manifest(const json& object) {
         for (const json& table : object.at("tables")) manifest.tables.push_back(parse_table(table, manifest));
         return manifest;
     } catch (const json::exception& error) {
-        refuse(error.what());
+        refuse({error.what()});
     }
 }
 

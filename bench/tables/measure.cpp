@@ -53,14 +53,14 @@ void run_once(const std::string& mesh, const Table& table, const Places& places,
 
 std::string mesh_path(const MeshSource& mesh, const Places& places) {
     if (!mesh.file.empty()) {
-        const std::string path = places.shared + "/" + mesh.file;
+        std::string path = places.shared + "/" + mesh.file;
         return fs::exists(path) ? path : std::string();
     }
     char noise[32];
     std::snprintf(noise, sizeof noise, "%g", mesh.noise);
     const std::string folder = places.meshes + "/" + mesh.generator + "-" + std::to_string(mesh.faces) + "-" + noise +
                                "-" + std::to_string(mesh.seed);
-    const std::string path = folder + "/" + mesh.generator + ".ply";
+    std::string path = folder + "/" + mesh.generator + ".ply";
     if (fs::exists(path)) return path;
     fs::create_directories(folder);
     const std::string log = folder + "/log.txt";
