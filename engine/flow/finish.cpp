@@ -36,13 +36,12 @@ Surface input_surface(const mesh::UnitFrame& frame, const FinalSurface& final, c
     return s;
 }
 
-Region describe_region(const mesh::WorkMesh& mesh, std::size_t r, const partition::RegionFaces& regions,
-                       const FinalSurface& final, const RegionQuality& quality, double weight) {
+Region describe_region(const mesh::WorkMesh& mesh, std::size_t r, const FinalSurface& final,
+                       const RegionQuality& quality, double weight) {
     const double diagonal = mesh.frame.diagonal, area = std::max(quality.area, 1e-300);
     Region region;
     region.id = static_cast<std::int32_t>(r);
     region.surface = input_surface(mesh.frame, final, quality);
-    region.faces = regions.size(r);
     region.area = quality.area / (mesh.frame.scale * mesh.frame.scale);
     region.rms = std::sqrt(quality.squared_distance / area) / diagonal;
     region.max = quality.max_distance / diagonal;
@@ -91,7 +90,7 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
 
     double squared = 0;
     for (std::size_t r = 0; r < flow.regions; ++r) {
-        Region region = describe_region(mesh, r, regions, surfaces[r], quality[r], options.weight);
+        Region region = describe_region(mesh, r, surfaces[r], quality[r], options.weight);
         region.surface_id = ids[r];
         result.energy.distance += quality[r].energy.distance;
         result.energy.normal += quality[r].energy.normal;
@@ -109,7 +108,12 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     result.energies = std::move(flow.energies);
     result.labels = mesh::labels_to_input(mesh, flow.labels);
     for (std::size_t f = 0; f < result.labels.size(); ++f) {
-        if (result.labels[f] < 0) result.unlabelled.push_back(static_cast<std::uint32_t>(f));
+        const std::int32_t label = result.labels[f];
+        if (label < 0) {
+            result.unlabelled.push_back(static_cast<std::uint32_t>(f));
+        } else {
+            ++result.regions[static_cast<std::size_t>(label)].faces;  // duplicates and degenerate faces count too
+        }
     }
     if (options.project && whole) result.projected = projected_positions(input, flow.labels, surfaces);
     return result;

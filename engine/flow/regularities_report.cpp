@@ -18,6 +18,10 @@ constexpr double rounding = 1e-9;
 constexpr double same_surface_noises = 4;
 /// What is not known to be exact is only compared up to this size: beyond, O(n²) of nothing in common.
 constexpr std::size_t most_general_surfaces = 400;
+/// Every surface is compared with every group: of more, the largest are looked at.
+constexpr std::size_t most_regular_surfaces = 1000;
+/// Pairs looked at and pairs compared on points: a soup has as many surfaces as faces, with nothing in common.
+constexpr std::size_t most_pairs = 4'000'000, most_comparisons = 400'000;
 
 bool analytic(SurfaceType type) {
     return type <= SurfaceType::torus;
@@ -55,11 +59,24 @@ double size_of(const Surface& s) {
 
 std::vector<Regularity> snap_regularities(std::vector<FinalSurface>& surfaces, const std::vector<double>& areas,
                                           double noise) {
-    std::vector<surface::RegularSurface> regular;
-    std::vector<std::uint32_t> place(surfaces.size(), std::numeric_limits<std::uint32_t>::max());
+    std::vector<std::uint32_t> eligible;
     for (std::size_t r = 0; r < surfaces.size(); ++r) {
         const FinalSurface& s = surfaces[r];
-        if (!analytic(s.surface.type) || s.evidence < 3 || !(s.extent > 0)) continue;
+        if (analytic(s.surface.type) && s.evidence >= 3 && s.extent > 0) {
+            eligible.push_back(static_cast<std::uint32_t>(r));
+        }
+    }
+    if (eligible.size() > most_regular_surfaces) {
+        std::sort(eligible.begin(), eligible.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return areas[a] != areas[b] ? areas[a] > areas[b] : a < b;
+        });
+        eligible.resize(most_regular_surfaces);
+        std::sort(eligible.begin(), eligible.end());
+    }
+    std::vector<surface::RegularSurface> regular;
+    std::vector<std::uint32_t> place(surfaces.size(), std::numeric_limits<std::uint32_t>::max());
+    for (const std::uint32_t r : eligible) {
+        const FinalSurface& s = surfaces[r];
         place[r] = static_cast<std::uint32_t>(regular.size());
         surface::RegularSurface entry;
         entry.surface = s.surface;
@@ -117,21 +134,31 @@ std::vector<std::int32_t> analytic_surface_ids(const std::vector<FinalSurface>& 
     // Every region asks those before it in order of size; ids are the smallest index of a chain of equal surfaces.
     std::vector<std::int32_t> parent = ids;
     const auto root = [&](std::int32_t r) {
-        while (parent[static_cast<std::size_t>(r)] != r) r = parent[static_cast<std::size_t>(r)];
+        while (parent[static_cast<std::size_t>(r)] != r) {
+            std::int32_t& up = parent[static_cast<std::size_t>(r)];
+            up = parent[static_cast<std::size_t>(up)];  // halves the path
+            r = up;
+        }
         return r;
     };
     double widest = 0;
     for (const Entry& e : entries) widest = std::max(widest, e.blur);
+    const std::size_t shares = std::max<std::size_t>(1, entries.size());
+    const std::size_t window = std::max<std::size_t>(8, most_pairs / shares);
+    const std::size_t most_tries = std::max<std::size_t>(4, most_comparisons / shares);
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const Entry& a = entries[i];
         const FinalSurface& sa = surfaces[a.region];
-        for (std::size_t j = i; j-- > 0;) {
+        const std::size_t last = i > window ? i - window : 0;
+        std::size_t tries = 0;
+        for (std::size_t j = i; j-- > last && tries < most_tries;) {
             const Entry& b = entries[j];
             if (b.type != a.type || a.size - b.size > a.blur + widest) break;
             if (a.size - b.size > a.blur + b.blur) continue;
             const FinalSurface& sb = surfaces[b.region];
             const auto ra = root(static_cast<std::int32_t>(a.region)), rb = root(static_cast<std::int32_t>(b.region));
             if (ra == rb) continue;
+            ++tries;
             if (!surface::same_surface(sa.surface, sa.points, sb.surface, sb.points,
                                        std::max(a.tolerance, b.tolerance)))
                 continue;

@@ -4,6 +4,7 @@
 #include "flow/dispatch.h"
 #include "flow/finish.h"
 #include "flow/flow.h"
+#include "flow/representable.h"
 #include "flow/project.h"
 #include "mesh/features.h"
 #include "mesh/work_mesh.h"
@@ -68,6 +69,7 @@ Segmentation segment_in_arena(const MeshView& view, const Options& options, cons
     try {
         control.report(Phase::prepare, 0.05);
         const mesh::WorkMesh mesh = mesh::build_work_mesh(view, control);
+        flow::require_representable(mesh.report);
         std::optional<mesh::FeatureEdges> features;
         if (options.feature_angle > 0) features = mesh::find_feature_edges(mesh, options.feature_angle, control);
         const double prepared = seconds_since(start);

@@ -5,6 +5,7 @@
 #include "flow/final_surfaces.h"
 #include "flow/finish.h"
 #include "flow/paper_loop.h"
+#include "flow/representable.h"
 #include "flow/project.h"
 #include "flow/smooth_borders.h"
 #include "mesh/features.h"
@@ -41,6 +42,7 @@ struct Segmenter::Impl {
         const runtime::RunControl control(&context);
         in_arena([&] {
             mesh = mesh::build_work_mesh(view, control);
+            flow::require_representable(mesh.report);
             unused = flow::UnusedVertices(mesh, view.positions);
             if (options.feature_angle > 0) features = mesh::find_feature_edges(mesh, options.feature_angle, control);
             loop.emplace(flow_input(control));
