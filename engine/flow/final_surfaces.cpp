@@ -183,7 +183,7 @@ class Finisher {
         describe(sample, r, result);
         const bool known = r < flow_.surfaces.size() && flow_.surfaces[r].type != SurfaceType::freeform;
         if (known) {
-            keep_verified(flow_.surfaces[r], sample, result);
+            keep_verified(simplified(flow_.surfaces[r], sample, regions_.size(r)), sample, result);
             if (!quadric_of(result.surface, result.centroid, result.quadric)) fit_quadric(r, result);
         } else {
             fit_quadric(r, result);
@@ -212,6 +212,33 @@ class Finisher {
         double sum = 0;
         for (const Vec3& p : sample.points) sum += squared_norm(p - result.centroid);
         result.extent = std::sqrt(sum / static_cast<double>(sample.points.size()));
+    }
+
+    /// Where few vertices tell, surfaces of more freedom than needed were verified as well: what is flat is a plane, a
+    /// strip between two rims a cone or cylinder when the normals say so, a torus of no visible bend a cylinder.
+    Surface simplified(const Surface& verified, const RegionSample& sample, std::size_t faces) const {
+        if (verified.type == SurfaceType::plane || !sample.complete) return verified;
+        const PointSet p = sample.all();
+        const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(verified.type));
+        const double tolerance = std::max(exact_tolerance, noise_margin * flow_.noise);
+        if (p.points.size() < 2 * freedom + 2) {
+            const SurfaceFit plane = surface::fit(SurfaceType::plane, p);
+            if (plane.ok && plane.max <= tolerance) return plane.surface;
+        }
+        const bool strip = 5 * p.points.size() >= 4 * faces;
+        if (!strip || (verified.type != SurfaceType::sphere && verified.type != SurfaceType::torus)) return verified;
+        Surface best = verified;
+        double best_score = (normal_deviation(verified, p) + 1e-7) * preference(verified.type);
+        for (const SurfaceType type : {SurfaceType::cylinder, SurfaceType::cone}) {
+            if (p.points.size() < 2 * static_cast<std::size_t>(surface::degrees_of_freedom(type))) continue;
+            const SurfaceFit fit = surface::fit(type, p);
+            if (!fit.ok || !(fit.q90 <= tolerance)) continue;
+            const double score = (normal_deviation(fit.surface, p) + 1e-7) * preference(type);
+            if (!(score < best_score)) continue;
+            best_score = score;
+            best = fit.surface;
+        }
+        return best;
     }
 
     void keep_verified(const Surface& verified, const RegionSample& sample, FinalSurface& result) const {

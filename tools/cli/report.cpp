@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace quadseg::cli {
 namespace {
@@ -120,7 +121,7 @@ Json parameters_json(const Surface& s) {
         case SurfaceType::torus:
             json["center"] = vector_json(s.point);
             json["axis"] = vector_json(s.axis);
-            json["major_radius"] = s.radius;
+            json["major_radius"] = std::abs(s.radius);  // negative: the lemon of a spindle torus
             json["minor_radius"] = s.minor_radius;
             break;
         case SurfaceType::blend:
