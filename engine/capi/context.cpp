@@ -5,7 +5,7 @@
 #include <memory>
 
 using namespace quadseg;
-using capi::fail, capi::guarded, capi::null_pointer;
+using capi::guarded, capi::null_pointer;
 
 extern "C" {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <unistd.h>
 
@@ -12,7 +13,7 @@ using namespace std::chrono_literals;
 namespace {
 
 std::string clock_text(double seconds) {
-    const auto whole = static_cast<unsigned long>(seconds + 0.5);
+    const auto whole = static_cast<unsigned long>(std::lround(seconds));
     std::array<char, 48> buffer{};
     if (whole >= 3600) {
         std::snprintf(buffer.data(), buffer.size(), "%lu:%02lu:%02lu", whole / 3600, whole / 60 % 60, whole % 60);

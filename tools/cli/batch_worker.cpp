@@ -103,6 +103,7 @@ Worker::Worker(const WorkerSettings& settings, const BatchItem& item, std::size_
     if (settings.timeout > 0) words.insert(words.end(), {"--timeout", seconds_text(settings.timeout)});
     words.insert(words.end(), settings.options.begin(), settings.options.end());
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const std::string messages = folder_ + "/stderr.txt";

@@ -142,7 +142,7 @@ void raise(const char* kind, const char* text) {
     PyErr_SetObject(py::type::handle_of(exception).ptr(), exception.ptr());
 }
 
-void translate(std::exception_ptr thrown) {
+void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param): pybind11's signature
     try {
         if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
