@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.22)
 # Compares the names that LIBRARY defines for others with the file EXPECTED. Inline members of public classes (weak
 # symbols of namespace quadseg) depend on the compiler and are only checked to be of that namespace.
 execute_process(COMMAND ${NM} -DC --defined-only ${LIBRARY} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
