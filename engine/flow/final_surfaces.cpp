@@ -31,6 +31,8 @@ constexpr double equal_ratio = 1.5;
 constexpr double noise_margin = 1.5;
 /// Where vertices were found exact, what a surface may miss free-form vertices by: the exact stage's second pass.
 constexpr double exact_tolerance = 2e-7;
+/// By how much vertices on the trim curves of a CAD file may be off, unit frame.
+constexpr double trim_error = 2e-5;
 /// Degrees by which the normals of a surface that explains a free-form patch may differ from the mesh's (RMS).
 constexpr double free_form_angle = 12;
 /// A refined quadric stands for the moments' one where it is so many times nearer to the vertices: then they lie on it,
@@ -296,11 +298,38 @@ class Finisher {
         const bool plane = fit.ok && fit.surface.type == SurfaceType::plane;
         if (judged && (!fit.ok || !(fit.rms <= 2 * tolerance) ||
                        (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few))))) {
-            describe_free_form(sample, result);
+            const SurfaceFit trimmed = free_form ? mostly_exact(few, tolerance) : SurfaceFit{};
+            if (trimmed.ok) {
+                refine_choice(trimmed.surface, sample, own, result);
+                (void)quadric_of(result.surface, result.centroid, result.quadric);
+            } else {
+                describe_free_form(sample, result);
+            }
             return;
         }
         if (fit.ok) refine_choice(fit.surface, sample, own, result);
         (void)quadric_of(result.surface, result.centroid, result.quadric);
+    }
+
+    /// A typed surface on which half of the vertices lie exactly and the others nearly: trim curves of CAD files are
+    /// off by up to 2e-5 of the diagonal (PROTOTYPE_TRUTH.md §1.4).
+    SurfaceFit mostly_exact(const RegionSample& few, double tolerance) const {
+        SurfaceFit best;
+        double best_score = 0;
+        for (const SurfaceType type :
+             {SurfaceType::plane, SurfaceType::cylinder, SurfaceType::cone, SurfaceType::sphere, SurfaceType::torus}) {
+            if (few.points.size() < 2 * static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 2) continue;
+            surface::FitOptions options;
+            options.hopeless = trim_error;
+            const SurfaceFit fit = surface::fit(type, few.all(), options);
+            if (!fit.ok || !(fit.median <= tolerance) || !(fit.q97 <= 2 * trim_error)) continue;
+            if (wrong_normals(fit.surface, few)) continue;
+            const double score = (normal_deviation(fit.surface, few.all()) + 1e-7) * preference(type);
+            if (best.ok && !(score < best_score)) continue;
+            best = fit;
+            best_score = score;
+        }
+        return best;
     }
 
     /// Neither the region's quadric nor its refinement on vertices comes near them.
