@@ -66,5 +66,13 @@ class InstructionGate(unittest.TestCase):
         self.assertGreater(min(stored["instructions"].values()), 0)
 
 
+class ThreadSplit(unittest.TestCase):
+    def test_work_of_one_thread_is_seen(self):
+        code, seconds = load("thread_split").split(["sh", "-c", "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done; exit 5"])
+        self.assertEqual(code, 5)
+        self.assertEqual(len(seconds), 1)
+        self.assertGreater(seconds[0], 0.01)
+
+
 if __name__ == "__main__":
     unittest.main()
