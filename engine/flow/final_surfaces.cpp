@@ -185,7 +185,7 @@ class Finisher {
         describe(sample, r, result);
         const bool known = r < flow_.surfaces.size() && flow_.surfaces[r].type != SurfaceType::freeform;
         if (known) {
-            keep_verified(simplified(flow_.surfaces[r], sample, regions_.size(r)), sample, result);
+            keep_verified(simplified(flow_.surfaces[r], sample, result.extent, regions_.size(r)), sample, result);
             if (!quadric_of(result.surface, result.centroid, result.quadric)) fit_quadric(r, result);
         } else {
             fit_quadric(r, result);
@@ -218,7 +218,7 @@ class Finisher {
 
     /// Where few vertices tell, surfaces of more freedom than needed were verified as well: what is flat is a plane, a
     /// strip between two rims a cone or cylinder when the normals say so, a torus of no visible bend a cylinder.
-    Surface simplified(const Surface& verified, const RegionSample& sample, std::size_t faces) const {
+    Surface simplified(const Surface& verified, const RegionSample& sample, double extent, std::size_t faces) const {
         if (verified.type == SurfaceType::plane || !sample.complete) return verified;
         const PointSet p = sample.all();
         const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(verified.type));
@@ -226,6 +226,13 @@ class Finisher {
         if (p.points.size() < 2 * freedom + 2) {
             const SurfaceFit plane = surface::fit(SurfaceType::plane, p);
             if (plane.ok && plane.max <= tolerance) return plane.surface;
+        }
+        // Trim curves bend cylinders: tori of hardly any bend, cones of hardly any opening.
+        const bool nearly_cylinder = (verified.type == SurfaceType::torus && verified.radius > 10 * extent) ||
+                                     (verified.type == SurfaceType::cone && verified.half_angle < 0.01);
+        if (nearly_cylinder && p.points.size() >= 12) {
+            const SurfaceFit cylinder = surface::fit(SurfaceType::cylinder, p);
+            if (cylinder.ok && cylinder.median <= tolerance && cylinder.q97 <= 2 * trim_error) return cylinder.surface;
         }
         const bool strip = 5 * p.points.size() >= 4 * faces;
         if (!strip || (verified.type != SurfaceType::sphere && verified.type != SurfaceType::torus)) return verified;
