@@ -67,9 +67,8 @@ std::vector<Regularity> snap_regularities(std::vector<FinalSurface>& surfaces, c
         }
     }
     if (eligible.size() > most_regular_surfaces) {
-        std::sort(eligible.begin(), eligible.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return areas[a] != areas[b] ? areas[a] > areas[b] : a < b;
-        });
+        std::sort(eligible.begin(), eligible.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return areas[a] != areas[b] ? areas[a] > areas[b] : a < b; });
         eligible.resize(most_regular_surfaces);
         std::sort(eligible.begin(), eligible.end());
     }

@@ -38,10 +38,7 @@ const std::vector<NamedOptions>& many_options() {
         {"one_region", [](Options& o) { o.regions = 1; }},
         {"tolerance", [](Options& o) { o.tolerance = 1e-3; }},
         {"features", [](Options& o) { o.feature_angle = 30; }},
-        {"post",
-         [](Options& o) {
-             o.smooth = o.project = o.project_joint = true;
-         }},
+        {"post", [](Options& o) { o.smooth = o.project = o.project_joint = true; }},
         {"paper", [](Options& o) { o.preset = Preset::paper; }},
         {"paper_seven",
          [](Options& o) {

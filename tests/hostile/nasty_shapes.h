@@ -192,7 +192,8 @@ inline std::vector<NamedShape> nasty_shapes() {
         {"isolated", with_isolated(of_part("plate", 1000))},
         {"corner_chain", corner_chain(12)},
         {"folded", folded},
-        {"many_boxes", [] {
+        {"many_boxes",
+         [] {
              Shape s;
              for (int i = 0; i < 40; ++i) s = joined(s, box(1, 2.0 * i));
              return s;

@@ -24,8 +24,9 @@ void PrintTo(const Job& job, std::ostream* out) {
     *out << job.name;
 }
 
-Job job(const std::string& name, const std::string& part, std::size_t faces, double noise,
-        const std::function<void(Options&)>& set = [](Options&) {}) {
+Job job(
+    const std::string& name, const std::string& part, std::size_t faces, double noise,
+    const std::function<void(Options&)>& set = [](Options&) {}) {
     Job j{name, {part, faces, noise, 1, true}, {}};
     set(j.options);
     return j;
@@ -113,9 +114,8 @@ TEST(Concurrent, EightDifferentJobsAreTheirSequentialSelves) {
     }
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < work.size(); ++i) {
-        threads.emplace_back([&w = work[i], i] {
-            w.together = run(w.part.mesh.view(), w.options, static_cast<int>(i % 4));
-        });
+        threads.emplace_back(
+            [&w = work[i], i] { w.together = run(w.part.mesh.view(), w.options, static_cast<int>(i % 4)); });
     }
     for (std::thread& t : threads) t.join();
     for (std::size_t i = 0; i < work.size(); ++i) EXPECT_TRUE(work[i].alone == work[i].together) << "job " << i;

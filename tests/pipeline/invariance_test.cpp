@@ -61,8 +61,7 @@ constexpr double same = 0.999;
 
 TEST_P(Invariance, OfScale) {
     for (const double scale : {1e-6, 1e6, 0.37}) {
-        expect_same(mapped(part_.mesh, [&](const Vec3& p) { return p * scale; }), same,
-                    std::to_string(scale).c_str());
+        expect_same(mapped(part_.mesh, [&](const Vec3& p) { return p * scale; }), same, std::to_string(scale).c_str());
     }
 }
 
@@ -78,7 +77,10 @@ TEST_P(Invariance, OfPlace) {
 
 TEST_P(Invariance, OfDirection) {
     for (const double angle : {0.3, 1.1, 2.5}) {
-        expect_same(mapped(part_.mesh, [&](const Vec3& p) { return turned_by(p, {1, 2, -0.7}, angle); }),
+        expect_same(mapped(part_.mesh,
+                           [&](const Vec3& p) {
+                               return turned_by(p, {1, 2, -0.7}, angle);
+                           }),
                     GetParam().noise > 0 ? 0.93 : same, std::to_string(angle).c_str());
     }
 }
