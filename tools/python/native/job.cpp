@@ -9,6 +9,16 @@ namespace quadseg::python {
 namespace py = pybind11;
 using namespace std::chrono_literals;
 
+namespace {
+
+/// Only there do signals reach Python.
+bool in_main_thread() {
+    const py::module_ threading = py::module_::import("threading");
+    return threading.attr("get_ident")().equal(threading.attr("main_thread")().attr("ident"));
+}
+
+}  // namespace
+
 Job::Job(const Limits& limits) : progress_(limits.progress) {
     context_.set_threads(limits.threads);
     context_.set_memory_limit(limits.memory_limit);
@@ -25,6 +35,11 @@ Job::Job(const Limits& limits) : progress_(limits.progress) {
 }
 
 void Job::run(const std::function<void(Context&)>& work) {
+    if (progress_.is_none() && !in_main_thread()) {  // nothing to do meanwhile: no second thread
+        const py::gil_scoped_release free;
+        work(context_);
+        return;
+    }
     std::thread worker([&] {
         try {
             work(context_);

@@ -1,5 +1,6 @@
 // Runs a call of the library on a thread of its own, while the Python thread that asked for it, without the GIL, waits,
-// hands progress on and looks for signals. So callbacks always come in the caller's thread, and Ctrl-C works.
+// hands progress on and looks for signals. So callbacks always come in the caller's thread, and Ctrl-C works. Where
+// there is neither a callback nor signals, the caller's thread does the work itself.
 #pragma once
 
 #include <quadseg/context.h>
