@@ -162,10 +162,14 @@ class TypeChoice {
     std::vector<SurfaceFit> candidates_;
 };
 
+/// Faces that the surfaces of a stopped call are made of, all regions together; below so many a region, planes.
+constexpr std::size_t rough_faces = 16384, least_rough_fit = 64;
+
 class Finisher {
   public:
     Finisher(const FlowInput& input, const partition::RegionFaces& regions, const FlowResult& flow)
-        : mesh_(input.mesh),
+        : input_(input),
+          mesh_(input.mesh),
           options_(input.options),
           regions_(regions),
           flow_(flow),
@@ -180,6 +184,7 @@ class Finisher {
     }
 
     FinalSurface run(std::size_t r) const {
+        if (input_.control.should_stop()) return roughly(r);
         FinalSurface result;
         const RegionSample sample = sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), refinement_points);
         describe(sample, r, result);
@@ -392,6 +397,36 @@ class Finisher {
         }
     }
 
+    /// For a call that was stopped: a surface from a few faces, so that all of them take milliseconds.
+    FinalSurface roughly(std::size_t r) const {
+        FinalSurface result;
+        const std::size_t size = regions_.size(r);
+        const std::size_t count = std::min(size, std::max<std::size_t>(2, rough_faces / regions_.count()));
+        std::vector<std::uint32_t> chosen(count);
+        for (std::size_t i = 0; i < count; ++i) chosen[i] = faces(r)[i * size / count];
+        partition::GatheredRegion soup;
+        partition::gather(mesh_, chosen.data(), count, soup);
+        for (const Vec3& p : soup.corners) result.centroid += p / static_cast<double>(soup.corners.size());
+        double sum = 0;
+        for (const Vec3& p : soup.corners) sum += squared_norm(p - result.centroid);
+        result.extent = std::sqrt(sum / static_cast<double>(soup.corners.size()));
+        if (count >= least_rough_fit) {
+            result.quadric = (paper_ ? policy_.fit(soup.soup()) : quadric::fit_region(soup.soup(), fit_options_)).proxy;
+            result.surface = named(result);
+        } else {
+            Vec3 normal;
+            for (std::size_t i = 0; i < count; ++i) normal += soup.normals[i] * soup.areas[i];
+            if (!(squared_norm(normal) > 0)) normal = {0, 0, 1};
+            result.surface.type = SurfaceType::plane;
+            result.surface.axis = to_array(normalized(normal));
+            result.surface.point = to_array(result.centroid);
+            (void)quadric_of(result.surface, result.centroid, result.quadric);
+        }
+        set_coefficients(result);
+        return result;
+    }
+
+    const FlowInput& input_;
     const mesh::WorkMesh& mesh_;
     const Options& options_;
     const partition::RegionFaces& regions_;

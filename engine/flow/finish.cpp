@@ -80,13 +80,18 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     const bool whole = !flow.partial && !input.control.should_stop();
     if (options.smooth && whole) smooth(input, flow, regions, surfaces, result);
 
-    std::vector<RegionQuality> quality = measure_quality(mesh, regions, surfaces);
+    std::vector<RegionQuality> quality = measure_quality(mesh, regions, surfaces, input.control);
     std::vector<std::int32_t> ids;
     if (options.regularities && options.preset == Preset::standard && whole) {
         result.regularities = snap_regularities(surfaces, areas_of(quality), flow.noise);
-        if (!result.regularities.empty()) quality = measure_quality(mesh, regions, surfaces);
+        if (!result.regularities.empty()) quality = measure_quality(mesh, regions, surfaces, input.control);
     }
-    ids = analytic_surface_ids(surfaces, flow.noise);
+    if (input.control.should_stop()) {
+        flow.partial = true;  // surfaces and distances may be rough ones
+        for (std::size_t r = 0; r < flow.regions; ++r) ids.push_back(static_cast<std::int32_t>(r));
+    } else {
+        ids = analytic_surface_ids(surfaces, flow.noise);
+    }
 
     double squared = 0;
     for (std::size_t r = 0; r < flow.regions; ++r) {

@@ -92,11 +92,45 @@ void add_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::P
     }
 }
 
+constexpr std::size_t block_faces = 4096, sampled_share = 64;
+
+RegionQuality measure_faces(const mesh::WorkMesh& mesh, const Faces& faces, const FinalSurface& final) {
+    RegionQuality q;
+    surface::SurfaceEvaluator(final.surface).visit([&](const auto& evaluator) {
+        add_distances(mesh, faces, evaluator, q);
+    });
+    add_energy(mesh, faces, final.quadric, q);
+    if (final.loop_proxy) {
+        RegionQuality loop;
+        add_energy(mesh, faces, *final.loop_proxy, loop);
+        q.energy = loop.energy;
+    }
+    return q;
+}
+
+/// One face in 64 stands for all of them.
+RegionQuality estimate_faces(const mesh::WorkMesh& mesh, const Faces& faces, const FinalSurface& final) {
+    const auto count = static_cast<std::size_t>(faces.second - faces.first);
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t i = 0; i < count; i += sampled_share) chosen.push_back(faces.first[i]);
+    RegionQuality q = measure_faces(mesh, {chosen.data(), chosen.data() + chosen.size()}, final);
+    double area = 0;
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) area += mesh.areas[*f];
+    const double factor = q.area > 0 ? area / q.area : 0;
+    q.area = area;
+    q.squared_distance *= factor;
+    q.energy.distance *= factor;
+    q.energy.normal *= factor;
+    q.gradient *= factor;
+    q.against *= factor;
+    return q;
+}
+
 }  // namespace
 
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,
-                                           const std::vector<FinalSurface>& surfaces) {
-    constexpr std::size_t block_faces = 8192;
+                                           const std::vector<FinalSurface>& surfaces,
+                                           const runtime::RunControl& control) {
     std::vector<Block> blocks;
     for (std::size_t r = 0; r < regions.count(); ++r) {
         for (std::size_t b = regions.begin[r]; b < regions.begin[r + 1]; b += block_faces) {
@@ -109,16 +143,8 @@ std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const par
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t i) {
         const Block& block = blocks[i];
         const Faces faces(regions.face.data() + block.begin, regions.face.data() + block.end);
-        const FinalSurface& final = surfaces[block.region];
-        surface::SurfaceEvaluator(final.surface).visit([&](const auto& evaluator) {
-            add_distances(mesh, faces, evaluator, parts[i]);
-        });
-        add_energy(mesh, faces, final.quadric, parts[i]);
-        if (final.loop_proxy) {
-            RegionQuality loop;
-            add_energy(mesh, faces, *final.loop_proxy, loop);
-            parts[i].energy = loop.energy;
-        }
+        parts[i] = control.should_stop() ? estimate_faces(mesh, faces, surfaces[block.region])
+                                         : measure_faces(mesh, faces, surfaces[block.region]);
     });
     std::vector<RegionQuality> quality(regions.count());
     for (std::size_t i = 0; i < blocks.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "flow/final_surfaces.h"
 #include "flow/flow.h"
 #include "quadric/energy.h"
+#include "runtime/run_control.h"
 
 #include <vector>
 
@@ -18,8 +19,10 @@ struct RegionQuality {
     double against = 0;              ///< area where n·∇f(c_t) ≤ 0
 };
 
-/// Exact distances; O(F) evaluations, parallel over blocks of faces.
+/// Exact distances; O(F) evaluations, parallel over blocks of faces. Once `control` says stop, what is left is
+/// estimated from one face in 64.
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,
-                                           const std::vector<FinalSurface>& surfaces);
+                                           const std::vector<FinalSurface>& surfaces,
+                                           const runtime::RunControl& control);
 
 }  // namespace quadseg::flow
