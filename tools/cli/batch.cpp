@@ -195,7 +195,7 @@ int run_batch(BatchArguments& a) {
     // The log is locked: what is in this scratch folder was left by a process that is gone.
     settings.scratch = settings.output + "/.unfinished" + shard_suffix(shard);
     fs::remove_all(settings.scratch);
-    settings.options.insert(settings.options.end(), {"--threads", std::to_string(threads)});
+    settings.bounds.insert(settings.bounds.end(), {"--threads", std::to_string(threads)});
 
     std::uintmax_t bytes = 0;
     for (const BatchItem& item : rest) bytes += item.bytes;
@@ -217,7 +217,7 @@ int run_item(BatchArguments& a) {
     std::array<char, 256> host{};
     gethostname(host.data(), host.size() - 1);
     settings.scratch = settings.output + "/.unfinished-" + std::string(host.data()) + "-" + std::to_string(getpid());
-    settings.options.insert(settings.options.end(), {"--threads", std::to_string(std::max(1, a.segment.threads))});
+    settings.bounds.insert(settings.bounds.end(), {"--threads", std::to_string(std::max(1, a.segment.threads))});
     const auto remove_scratch = [&] {
         std::error_code ignored;
         fs::remove_all(settings.scratch, ignored);

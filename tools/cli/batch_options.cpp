@@ -78,9 +78,9 @@ void add_item_options(CLI::App& command, BatchArguments& a) {
         ->capture_default_str()
         ->check(CLI::PositiveNumber)
         ->group(group);
-    // `segment` may come to have one of its own; then its process also refuses by itself, in time.
     if (CLI::Option* option = command.get_option_no_throw("--memory-limit")) {
         option->group(group);
+        a.segment_bounds_memory = true;
     } else {
         command.add_option("--memory-limit", a.memory_limit, "Bytes a mesh's process may use, like 500M or 2G")
             ->group(group);
@@ -99,7 +99,11 @@ WorkerSettings worker_settings(BatchArguments& a) {
     settings.timeout = a.segment.timeout;
     settings.grace = a.grace;
     const CLI::Option* limit = a.command->get_option("--memory-limit");
-    if (limit->count() > 0) settings.memory_limit = parse_bytes("--memory-limit", limit->results().front());
+    if (limit->count() > 0) {
+        const std::string text = limit->results().front();
+        settings.memory_limit = parse_bytes("--memory-limit", text);
+        if (a.segment_bounds_memory) settings.bounds = {"--memory-limit", text};
+    }
     return settings;
 }
 

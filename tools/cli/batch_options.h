@@ -20,7 +20,8 @@ struct BatchArguments {
     std::string shard = "1/1";
     double grace = 10;
     std::string memory_limit;
-    std::string name;  ///< of the one mesh of `batch-item`
+    bool segment_bounds_memory = false;  ///< `segment` has a --memory-limit of its own, and refuses in time
+    std::string name;                    ///< of the one mesh of `batch-item`
 };
 
 /// Adds what one mesh of a batch and a whole one have in common.

@@ -102,6 +102,7 @@ Worker::Worker(const WorkerSettings& settings, const BatchItem& item, std::size_
                                    folder_ + "/files", "--quiet", "--progress", "never"};
     if (settings.timeout > 0) words.insert(words.end(), {"--timeout", seconds_text(settings.timeout)});
     words.insert(words.end(), settings.options.begin(), settings.options.end());
+    words.insert(words.end(), settings.bounds.begin(), settings.bounds.end());
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());

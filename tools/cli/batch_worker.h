@@ -15,7 +15,8 @@ namespace quadseg::cli {
 struct WorkerSettings {
     std::string output;                ///< folder of the batch
     std::string scratch;               ///< folder below it, of this process alone
-    std::vector<std::string> options;  ///< of `segment`
+    std::vector<std::string> options;  ///< of `segment`, that decide what comes out
+    std::vector<std::string> bounds;   ///< of `segment`, that decide what it may use
     double timeout = 0;                ///< seconds, then a partial result; 0: none
     double grace = 10;                 ///< seconds after the time-out until the process is killed
     std::size_t memory_limit = 0;      ///< bytes of data, 0: none
