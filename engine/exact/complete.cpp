@@ -59,6 +59,13 @@ bool is_free(const Scene& scene, const Explained& state, std::size_t facet) {
     return true;
 }
 
+/// Fans of slivers close the ends of rows: their vertices turn far round the surface, but lie on it to the last digit.
+bool is_exact_sliver(const Scene& scene, std::size_t f, const FaceFit& fit) {
+    const double height = static_cast<double>(scene.heights[f]);
+    return fit.distance <= scene.tolerances.fit && 2 * fit.angle <= fit.allowed &&
+           2 * scene.mesh.areas[f] > 5 * height * height;
+}
+
 }  // namespace
 
 void add_planes(const Scene& scene, double largest_step, Explained& state) {
@@ -103,7 +110,9 @@ void extend_to_borders(const Scene& scene, double largest_step, Explained& state
             if (g < 0 || state.region[static_cast<std::size_t>(g)] >= 0) continue;
             const FaceFit fit = fitters[static_cast<std::size_t>(region)](static_cast<std::size_t>(g));
             const bool curved = state.surface[static_cast<std::size_t>(region)].type != SurfaceType::plane;
-            if (!fit.within(scene.tolerances.border) || (curved && fit.step > 1.7 * largest_step)) continue;
+            if (!fit.within(scene.tolerances.border)) continue;
+            if (curved && fit.step > 1.7 * largest_step && !is_exact_sliver(scene, static_cast<std::size_t>(g), fit))
+                continue;
             offers.push({fit.distance, static_cast<std::uint32_t>(g), region});
         }
     };

@@ -19,7 +19,7 @@ struct PatchSizes {
     std::size_t gate, large;
     std::array<std::size_t, 2> small;
 };
-constexpr PatchSizes disc_sizes{12, 40, {6, 3}}, row_sizes{8, 24, {5, 3}};
+constexpr PatchSizes disc_sizes{16, 40, {8, 4}}, row_sizes{8, 24, {5, 3}};
 constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
                            SurfaceType::torus};
 constexpr double most_gap = 0.3;
