@@ -36,11 +36,7 @@ FlowResult run_standard(const FlowInput& input) {
     exact::ExactSurfaces exact;
     try {
         const NoiseEstimate noise = estimate_noise(input.mesh, input.control);
-        if (noise.noisy()) {
-            FlowResult noisy = run_noisy(input, noise);
-            noisy.noise = noise.sigma;
-            return noisy;
-        }
+        if (noise.noisy()) return run_noisy(input, noise);
         exact = exact::find_exact_surfaces(input.mesh, input.control);
     } catch (const runtime::Stopped&) {
         return run_fast(input, fast_options(input.options));
