@@ -1,5 +1,6 @@
 #include "flow/final_surfaces.h"
 
+#include "exact/tolerances.h"
 #include "flow/methods.h"
 #include "flow/region_sample.h"
 #include "runtime/parallel.h"
@@ -119,7 +120,10 @@ class TypeChoice {
     }
     double limit() const { return std::max(floor_, equal_ratio * best_rms()); }
     void consider(const SurfaceFit& fit) {
-        if (fit.ok && std::isfinite(fit.rms)) candidates_.push_back(fit);
+        if (!fit.ok || !std::isfinite(fit.rms)) return;
+        // A pair of planes that coincide has every vertex and no normal.
+        if (!candidates_.empty() && !(normal_deviation(fit.surface, p_) <= 1)) return;
+        candidates_.push_back(fit);
     }
 
     /// The region's own quadric, its refinement on the vertices, and the member of the family that its eigenvalues
@@ -173,7 +177,8 @@ class Finisher {
           options_(input.options),
           regions_(regions),
           flow_(flow),
-          paper_(options_.preset == Preset::paper) {
+          paper_(options_.preset == Preset::paper),
+          precision_(exact::coordinate_precision(input.mesh)) {
         if (paper_) {
             policy_ = method_policy(options_);
         } else {
@@ -194,7 +199,7 @@ class Finisher {
             if (!quadric_of(result.surface, result.centroid, result.quadric)) fit_quadric(r, result);
         } else {
             fit_quadric(r, result);
-            if (paper_) result.loop_proxy = result.quadric;
+            result.loop_proxy = result.quadric;
             choose(r, sample, result);
         }
         set_coefficients(result);
@@ -299,7 +304,7 @@ class Finisher {
         const bool free_form = !paper_ && r < flow_.surfaces.size();
         const RegionSample few = sample.thinned(choice_points);
         const double rounding = 1e-12 * result.extent;
-        const double floor = std::max(noise_margin * flow_.noise, rounding);
+        const double floor = std::max({noise_margin * flow_.noise, rounding, 3 * precision_});
         const double tolerance = free_form ? std::max(floor, exact_tolerance) : floor;
         // The noise is known: what is farther off is free-form.
         const bool judged = free_form || (!paper_ && flow_.noise > 0);
@@ -432,6 +437,7 @@ class Finisher {
     const partition::RegionFaces& regions_;
     const FlowResult& flow_;
     bool paper_;
+    double precision_;  ///< of the coordinates, unit frame
     MethodPolicy policy_;
     quadric::RegionFitOptions fit_options_;
 };

@@ -12,7 +12,7 @@ namespace quadseg::flow {
 struct FinalSurface {
     Surface surface;         ///< unit frame
     quadric::Proxy quadric;  ///< the same as a quadric (torus, blend, freeform: the best one)
-    /// Preset paper: the proxy of its loop, whose energy the paper speaks of; the surface may be a refit to vertices.
+    /// The proxy of least energy, which the energies speak of, where the surface is a later refit to the vertices.
     std::optional<quadric::Proxy> loop_proxy;
     bool one_sheet = true;  ///< the region's foot points on the quadric lie on one sheet
     // What the regularities between surfaces are judged by.
