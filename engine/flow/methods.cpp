@@ -175,7 +175,7 @@ partition::RegionScore primitive_score(const quadric::Moments& moments, double w
 
 }  // namespace
 
-MethodPolicy method_policy(const Options& options) {
+MethodPolicy method_policy(const Options& options, std::function<void()> poll) {
     MethodPolicy policy;
     partition::FaceMetric& metric = policy.metric;
     metric.normal = options.weight;
@@ -185,6 +185,7 @@ MethodPolicy method_policy(const Options& options) {
             quadric::RegionFitOptions fit_options;
             fit_options.weight = options.weight;
             fit_options.plane_tolerance = tolerance;
+            fit_options.poll = std::move(poll);
             policy.fit = [fit_options](const TriangleSoup& r) { return quadric::fit_region(r, fit_options); };
             break;
         }

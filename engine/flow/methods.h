@@ -34,7 +34,8 @@ struct MethodPolicy {
 };
 
 /// For every method but hierarchical, whose regions are fitted as those of hybrid.
-MethodPolicy method_policy(const Options& options);
+/// `poll` is called between the passes of a fit over its faces; what it throws ends the fit.
+MethodPolicy method_policy(const Options& options, std::function<void()> poll = {});
 
 /// Method::hierarchical: merges down to Options::regions; 0: as far as the energy stays below
 /// PaperOptions::energy_threshold.

@@ -24,7 +24,7 @@ VariationalLoop::VariationalLoop(const FlowInput& input)
       options_(input.options),
       control_(&input.control),
       passage_{&input.mesh, input.features, {}},
-      policy_(method_policy(input.options)),
+      policy_(method_policy(input.options, [this] { control_->check(); })),
       flood_(passage_) {
     components_.assign(mesh_.face_count(), 0);
     component_count_ = partition::connected_parts(passage_, components_);
@@ -197,12 +197,16 @@ void VariationalLoop::fit_regions() {
         const std::uint32_t r = changed[i];
         partition::GatheredRegion gathered;
         partition::gather(mesh_, faces_[r].data(), faces_[r].size(), gathered);
+        control_->check();
         state_.fits[r] = policy_.fit(gathered.soup());
-        areas_[r] = 0;
+        double area = 0;
+        std::size_t polls = 0;
         for (const std::uint32_t f : faces_[r]) {
-            areas_[r] += mesh_.areas[f];
+            control_->check_often(polls);
+            area += mesh_.areas[f];
             state_.density[f] = partition::error_density(mesh_, f, state_.fits[r].proxy, policy_.metric);
         }
+        areas_[r] = area;
     });
     for (const std::uint32_t r : changed) {
         state_.stamps[r] = next_stamp_++;

@@ -32,6 +32,8 @@ enum class FloodScope { affected, all };
 class VariationalLoop {
   public:
     explicit VariationalLoop(const FlowInput& input);
+    VariationalLoop(const VariationalLoop&) = delete;  // its fits ask its own control whether to go on
+    VariationalLoop& operator=(const VariationalLoop&) = delete;
 
     /// Section 4.2: a seed in each component (feature group) and random ones up to `count`, each with the plane of its
     /// face; one flood and fit.

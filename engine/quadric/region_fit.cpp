@@ -22,6 +22,7 @@ class RegionFitter {
 
     RegionFit run() {
         if (!(faces_.area() > 0)) return degenerate();
+        poll();
         fit_planar();
         const double tolerance = options_.plane_tolerance * (options_.plane_tolerance_per_area ? faces_.area() : 1);
         if (best_.total <= tolerance) return best_;
@@ -34,6 +35,15 @@ class RegionFitter {
     }
 
   private:
+    void poll() const {
+        if (options_.poll) options_.poll();
+    }
+
+    Candidate prepare(const Coefficients& c) {
+        poll();
+        return faces_.prepare(c);
+    }
+
     RegionFit degenerate() const {
         RegionFit fit;
         fit.proxy = soup_.size() > 0 ? plane_proxy(soup_.corners[0], soup_.normals[0]) : plane_proxy({}, {0, 0, 1});
@@ -65,6 +75,7 @@ class RegionFitter {
     /// Takes the candidate if it is better: valid ones first, then by true energy.
     void offer(Candidate& candidate) {
         if (!candidate.usable) return;
+        poll();
         faces_.evaluate(candidate);
         if (!candidate.usable) return;
         RegionFit fit;
@@ -86,29 +97,31 @@ class RegionFitter {
 
     /// The paper's two steps: Taubin, then the weighted linear system.
     void fit_two_steps() {
-        Candidate candidate = faces_.prepare(fit_taubin(moments_).c);
+        Candidate candidate = prepare(fit_taubin(moments_).c);
         for (int k = 0; k < options_.reweightings && candidate.usable && weight_ > 0; ++k) {
             Moments weighted;
+            poll();
             faces_.reweigh(candidate, weighted);
-            candidate = faces_.prepare(fit_least_squares(weighted, weight_).c);
+            candidate = prepare(fit_least_squares(weighted, weight_).c);
         }
         offer(candidate);
     }
 
     /// Two starts that fail in different places (Taubin on near planes, unit weights on cones), each also reweighted.
     void fit_best() {
-        Candidate taubin = faces_.prepare(fit_taubin(moments_).c);
+        Candidate taubin = prepare(fit_taubin(moments_).c);
         offer(taubin);
         if (!(weight_ > 0)) return;
-        Candidate linear = faces_.prepare(fit_least_squares(moments_, weight_).c);
+        Candidate linear = prepare(fit_least_squares(moments_, weight_).c);
         offer(linear);
         for (int k = 0; k < options_.reweightings; ++k) {
             if (!linear.usable) return;
             if (!taubin.usable) taubin = linear;
             Moments weighted_taubin, weighted_linear;
+            poll();
             faces_.reweigh(taubin, linear, weighted_taubin, weighted_linear);
-            taubin = faces_.prepare(fit_least_squares(weighted_taubin, weight_).c);
-            linear = faces_.prepare(fit_least_squares(weighted_linear, weight_).c);
+            taubin = prepare(fit_least_squares(weighted_taubin, weight_).c);
+            linear = prepare(fit_least_squares(weighted_linear, weight_).c);
             offer(taubin);
             offer(linear);
         }

@@ -5,6 +5,7 @@
 #include "quadric/monomials.h"
 
 #include <cstddef>
+#include <functional>
 #include <span>
 
 namespace quadseg::quadric {
@@ -40,6 +41,8 @@ struct RegionFitOptions {
     bool best_of = true;  ///< also LSQ0 + reweighting beside Taubin + reweighting, chosen by true energy; false: the
                           ///< paper's two steps
     int reweightings = 1;
+    /// Called before every pass over the faces; what it throws ends the fit. For regions of a million faces.
+    std::function<void()> poll = {};
 };
 
 /// Section 4.3.2. Deterministic. O(size).
