@@ -85,11 +85,14 @@ class PaperFlow {
     /// Merging and insertion (section 4.3.3) until a stop rule holds.
     StopReason finish_number() {
         StopReason reason = StopReason::converged;
-        for (;;) {
+        // Merges and insertions can undo each other for ever: twice as many insertions as there can be regions.
+        const std::size_t bound = 2 * (wanted_ > 0 ? wanted_ : paper_.maximum_regions) + 16;
+        for (std::size_t insertions = 0;; ++insertions) {
             merge_redundant();
             const std::size_t count = loop_.state().regions();
             if (wanted_ > 0 && count > wanted_) {
                 if (!merge_cheapest()) break;  // every component, every feature group keeps a region
+                --insertions;
                 continue;
             }
             if (wanted_ > 0 ? count == wanted_ : well_approximated()) {
@@ -100,7 +103,7 @@ class PaperFlow {
                 reason = StopReason::maximum;
                 break;
             }
-            if (!insert_region()) break;
+            if (insertions >= bound || !insert_region()) break;
         }
         if (reason == StopReason::regions && paper_.teleportation) teleport_regions();
         lloyd_again();
