@@ -5,6 +5,7 @@
 #include <CGAL/Shape_detection/Region_growing/Region_growing.h>
 #include <CGAL/Shape_detection/Region_growing/Region_growing_on_polygon_mesh.h>
 #include <CGAL/boost/graph/properties_Surface_mesh.h>
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -21,13 +22,15 @@ class RegionGrowing : public Adapter {
   public:
     void prepare(const Mesh& mesh, std::size_t) override { mesh_ = cgal_mesh(mesh); }
 
-    /// Planes within .05 % of the diagonal and 5 degrees, of at least 4 faces, best fitted seeds first.
+    /// Planes within .05 % of the diagonal and 5 degrees, of at least .05 % of the faces (at least 10), best seeds
+    /// first.
     void segment() override {
         const CGAL::Bbox_3 box = CGAL::bbox_3(mesh_.points().begin(), mesh_.points().end());
         const double diagonal = std::hypot(box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin());
         const Faces faces = mesh_.faces();
         Neighbors neighbors(mesh_);
-        Planes planes(mesh_, 5e-4 * diagonal, 5, 4, mesh_.points());
+        const std::size_t smallest = std::max<std::size_t>(10, mesh_.number_of_faces() / 2000);
+        Planes planes(mesh_, 5e-4 * diagonal, 5, smallest, mesh_.points());
         Sorting sorting(mesh_, neighbors, mesh_.points());
         sorting.sort();
         Growing growing(faces, neighbors, planes, sorting.seed_map());

@@ -19,7 +19,7 @@ std::vector<std::string> faults(const Traits& traits, std::size_t regions, const
     if (score.unlabelled_area > 0.9) result.emplace_back("nearly nothing labelled");
     // Shapes without orientation join faces of opposite normals: near in distance, far in energy.
     if (!(score.energy_density < blind.energy_density) && !(score.rms < 0.9 * blind.rms)) {
-        result.emplace_back("no better than regions that look at no geometry: labels of other faces?");
+        result.emplace_back("no better than regions that look at no geometry");
     }
     return result;
 }
