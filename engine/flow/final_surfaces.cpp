@@ -133,12 +133,14 @@ class TypeChoice {
         consider(own);
         if (p_.points.size() < 10) return;
         const SurfaceFit general = surface::fit_type(SurfaceType::quadric, p_, start_.coefficients, options_);
-        const bool exact = general.ok && general.rms * exact_quadric_gain < own.rms;
-        if (exact) consider(general);
-        const Surface& shown = exact ? general.surface : start_;
         const Vec3 near = p_.points[p_.points.size() / 2];
         double radius = 0;
         for (const Vec3& x : p_.points) radius = std::max(radius, norm(x - near));
+        // A quadric of no name is a pair of planes or nearly one: no surface of a region (MATH.md §4).
+        const bool exact = general.ok && general.rms * exact_quadric_gain < own.rms &&
+                           surface::classify(general.surface.coefficients, near, radius).type != SurfaceType::quadric;
+        if (exact) consider(general);
+        const Surface& shown = exact ? general.surface : start_;
         const SurfaceType family = surface::classify(shown.coefficients, near, radius, 0.02).type;
         if (is_special(family)) consider(surface::fit_type(family, p_, shown.coefficients, options_));
     }
