@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <queue>
 
 namespace quadseg::exact {
@@ -29,6 +30,17 @@ constexpr double hopeless = 1e300;
 bool is_long(const Scene& scene, std::uint32_t f) {
     const double height = static_cast<double>(scene.heights[f]);
     return 2 * scene.mesh.areas[f] > 3 * height * height;
+}
+
+/// Facets of one size that fold by no more than those of an octagon: a row of them may be a cylinder of eight facets.
+bool folds_alike(const Scene& scene, std::uint32_t f, int k) {
+    constexpr double octagon = 46 * std::numbers::pi / 180;
+    const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
+    if (g < 0 || dihedral(scene.mesh, f, static_cast<std::size_t>(g)) > octagon) return false;
+    const double a = scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[f])].area;
+    const double b =
+        scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[static_cast<std::size_t>(g)])].area;
+    return std::max(a, b) <= 1.1 * std::min(a, b);
 }
 
 Vec3 facet_centre(const Scene& scene, std::size_t facet) {
@@ -208,7 +220,7 @@ Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, 
         for (std::size_t j = first; j < patch.faces.size(); ++j) {
             const std::uint32_t f = patch.faces[j];
             for (int k = 0; k < 3; ++k) {
-                if (scene.is_crease(f, k)) continue;
+                if (scene.is_crease(f, k) && !(row && folds_alike(scene, f, k))) continue;
                 const auto g = static_cast<std::uint32_t>(scene.mesh.neighbors[f][static_cast<std::size_t>(k)]);
                 if (scene.in_sure_plane(g) || scene.facets.of_face[g] == id || marks.has_face(g) || !usable(g))
                     continue;
