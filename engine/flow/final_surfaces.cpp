@@ -82,8 +82,8 @@ bool is_special(SurfaceType type) {
 /// Chooses the type of one region's surface on a small sample.
 class TypeChoice {
   public:
-    TypeChoice(const PointSet& p, const Surface& start, double floor, bool torus)
-        : p_(p), start_(start), floor_(floor), torus_(torus) {
+    TypeChoice(const PointSet& p, const Surface& start, double floor, bool torus, bool settle_early)
+        : p_(p), start_(start), floor_(floor), torus_(torus), settle_early_(settle_early) {
         options_.iterations = 15;
     }
 
@@ -91,12 +91,17 @@ class TypeChoice {
     SurfaceFit run() {
         consider(surface::fit(SurfaceType::plane, p_, options_));
         if (best_rms() <= floor_) return chosen();
-        consider_general();
+        const SurfaceFit own = surface::measure(start_, p_);
+        consider(own);
         // Types that stay far above what is reached already need no more than a few steps.
         for (const SurfaceType type : {SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone}) {
             options_.hopeless = 2 * limit();
             consider(surface::fit(type, p_, options_));
         }
+        // Where energy made the regions, a simple type that is nearer to the vertices than the quadric settles it.
+        if (settle_early_ && best_rms() < own.rms) return chosen();
+        options_.hopeless = 2 * limit();
+        consider_general(own);
         // A torus is no quadric: it has to be meaningfully better than all of them.
         const double better = std::max(floor_, best_rms() / equal_ratio);
         if (torus_ && best_rms() > floor_) {
@@ -126,11 +131,9 @@ class TypeChoice {
         candidates_.push_back(fit);
     }
 
-    /// The region's own quadric, its refinement on the vertices, and the member of the family that its eigenvalues
+    /// The refinement of the region's own quadric on the vertices, and the member of the family that its eigenvalues
     /// show.
-    void consider_general() {
-        const SurfaceFit own = surface::measure(start_, p_);
-        consider(own);
+    void consider_general(const SurfaceFit& own) {
         if (p_.points.size() < 10) return;
         const SurfaceFit general = surface::fit_type(SurfaceType::quadric, p_, start_.coefficients, options_);
         const Vec3 near = p_.points[p_.points.size() / 2];
@@ -163,7 +166,7 @@ class TypeChoice {
     const PointSet p_;
     const Surface& start_;
     double floor_;
-    bool torus_;
+    bool torus_, settle_early_;
     surface::FitOptions options_;
     std::vector<SurfaceFit> candidates_;
 };
@@ -310,7 +313,8 @@ class Finisher {
         const double tolerance = free_form ? std::max(floor, exact_tolerance) : floor;
         // The noise is known: what is farther off is free-form.
         const bool judged = free_form || (!paper_ && flow_.noise > 0);
-        TypeChoice choice(few.all(), own, floor, !paper_);  // the paper's proxies are quadrics
+        // The paper's proxies are quadrics.
+        TypeChoice choice(few.all(), own, floor, !paper_, !paper_ && !free_form);
         const bool general_fails = judged && fails(own, few, 2 * tolerance);
         SurfaceFit fit = general_fails ? choice.torus(tolerance) : choice.run();
         const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
