@@ -5,11 +5,11 @@ python=$1 source=$2 folder=$3
 rm -rf "$folder"
 mkdir -p "$folder/source"
 # pip leaves build folders in the tree it builds: not in the user's.
-for part in CMakeLists.txt pyproject.toml setup.py README.md LICENSE engine simplify datasets tools; do
+for part in CMakeLists.txt README.md LICENSE engine simplify datasets tools; do
     cp -r "$source/$part" "$folder/source/"
 done
 "$python" -m pip install --quiet --no-build-isolation --no-deps --no-index --disable-pip-version-check \
-    --root-user-action=ignore --target "$folder/site" "$folder/source"
+    --root-user-action=ignore --target "$folder/site" "$folder/source/tools/python"
 cd "$folder"
 PYTHONPATH="$folder/site" "$python" - <<'PYTHON'
 import numpy as np, quadseg
