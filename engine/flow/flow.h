@@ -32,7 +32,7 @@ struct FlowResult {
     /// be chosen.
     std::vector<Surface> surfaces;
     double coarse_seconds = 0;  ///< spent on the simplified mesh
-    double noise = 0;  ///< estimated standard deviation of the vertices, unit frame; 0: not estimated
+    double noise = 0;           ///< estimated standard deviation of the vertices, unit frame; 0: not estimated
 };
 
 }  // namespace quadseg::flow

@@ -65,7 +65,9 @@ TEST_F(Contract, SegmentWritesItsFiles) {
         std::set<std::string> names;
         for (const auto& [key, value] : region["parameters"].items()) names.insert(key);
         const auto expected = parameters.find(region["type"].get<std::string>());
-        if (expected != parameters.end()) EXPECT_EQ(names, expected->second) << region["type"];
+        if (expected != parameters.end()) {
+            EXPECT_EQ(names, expected->second) << region["type"];
+        }
     }
 }
 

@@ -14,7 +14,7 @@ int main() {
     constexpr int n = 8;
     PolyMesh mesh;
     auto vertex = [&mesh, seen = std::vector<PolyMesh::VertexHandle>((n + 1) * (n + 1) * (n + 1))](
-                            const std::array<int, 3>& p) mutable {
+                      const std::array<int, 3>& p) mutable {
         auto& handle = seen[static_cast<std::size_t>((p[0] * (n + 1) + p[1]) * (n + 1) + p[2])];
         if (!handle.is_valid()) {
             handle = mesh.add_vertex(
