@@ -15,10 +15,9 @@ struct Candidate {
     std::vector<std::uint32_t> faces;  ///< ascending
     std::size_t facets = 0;            ///< different facets among them
     double area = 0;
-    double median = 0;   ///< of the |distance| of its vertices
-    double gap = 0;      ///< share of the border beyond which the neighbour creeps away
-    double step = 0;     ///< 75 % quantile, by area, of the faces' steps, radians
-    bool loose = false;  ///< fitted in the second pass
+    double median = 0;  ///< of the |distance| of its vertices
+    double gap = 0;     ///< share of the border beyond which the neighbour creeps away
+    double step = 0;    ///< 75 % quantile, by area, of the faces' steps, radians
 };
 
 /// How a face lies to a surface.

@@ -1,6 +1,7 @@
 #include "exact/facets.h"
 
 #include "math/symmetric3.h"
+#include "runtime/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,24 +9,6 @@
 namespace quadseg::exact {
 
 namespace {
-
-double longest_edge(const mesh::WorkMesh& mesh, std::size_t f) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) {
-        longest = std::max(longest, squared_norm(mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)));
-    }
-    return std::sqrt(longest);
-}
-
-/// Smallest altitude of each face.
-std::vector<float> face_heights(const mesh::WorkMesh& mesh) {
-    std::vector<float> heights(mesh.face_count());
-    for (std::size_t f = 0; f < heights.size(); ++f) {
-        const double longest = longest_edge(mesh, f);
-        heights[f] = static_cast<float>(longest > 0 ? 2 * mesh.areas[f] / longest : 0);
-    }
-    return heights;
-}
 
 /// Faces by falling height, to a factor of 2, then by index: slivers, whose normals say little, come last.
 std::vector<std::uint32_t> order_by_height(const std::vector<float>& heights) {
@@ -128,8 +111,9 @@ class PlaneSums {
 
 class FacetFinder {
   public:
-    FacetFinder(const mesh::WorkMesh& mesh, const Tolerances& t, const runtime::RunControl& control)
-        : mesh_(mesh), tolerances_(t), control_(control), heights_(face_heights(mesh)) {
+    FacetFinder(const mesh::WorkMesh& mesh, const Tolerances& t, const std::vector<float>& heights,
+                const runtime::RunControl& control)
+        : mesh_(mesh), tolerances_(t), control_(control), heights_(heights) {
         result_.of_face.assign(mesh.face_count(), -1);
         incident_.assign(mesh.vertex_count(), 0);
         seen_.assign(mesh.vertex_count(), 0);
@@ -261,7 +245,7 @@ class FacetFinder {
     const mesh::WorkMesh& mesh_;
     const Tolerances& tolerances_;
     const runtime::RunControl& control_;
-    std::vector<float> heights_;
+    const std::vector<float>& heights_;
     Facets result_;
     std::vector<std::uint32_t> incident_, seen_, members_;
     std::vector<Point2> outline_;
@@ -270,8 +254,21 @@ class FacetFinder {
 
 }  // namespace
 
-Facets find_facets(const mesh::WorkMesh& mesh, const Tolerances& tolerances, const runtime::RunControl& control) {
-    return FacetFinder(mesh, tolerances, control).find();
+std::vector<float> face_heights(const mesh::WorkMesh& mesh) {
+    std::vector<float> heights(mesh.face_count());
+    runtime::parallel_for(heights.size(), 16384, [&](std::size_t f) {
+        double longest = 0;
+        for (int k = 0; k < 3; ++k) {
+            longest = std::max(longest, squared_norm(mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)));
+        }
+        heights[f] = static_cast<float>(longest > 0 ? 2 * mesh.areas[f] / std::sqrt(longest) : 0);
+    });
+    return heights;
+}
+
+Facets find_facets(const mesh::WorkMesh& mesh, const Tolerances& tolerances, const std::vector<float>& heights,
+                   const runtime::RunControl& control) {
+    return FacetFinder(mesh, tolerances, heights, control).find();
 }
 
 }  // namespace quadseg::exact

@@ -26,6 +26,10 @@ struct Facets {
     std::size_t size(std::size_t f) const noexcept { return begin[f + 1] - begin[f]; }
 };
 
-Facets find_facets(const mesh::WorkMesh& mesh, const Tolerances& tolerances, const runtime::RunControl& control);
+/// Smallest altitude of each face; 0 for faces without area.
+std::vector<float> face_heights(const mesh::WorkMesh& mesh);
+
+Facets find_facets(const mesh::WorkMesh& mesh, const Tolerances& tolerances, const std::vector<float>& heights,
+                   const runtime::RunControl& control);
 
 }  // namespace quadseg::exact

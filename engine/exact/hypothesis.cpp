@@ -284,7 +284,6 @@ Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions
         };
         const auto grown = [&](const Surface& surface, std::size_t facets) -> std::optional<Candidate> {
             Candidate candidate = grow(scene, surface, patch.up_to(facets), options.most_step, marks);
-            candidate.loose = options.loose;
             if (candidate.faces.size() * 2 < patch.facet_end[facets - 1]) return std::nullopt;
             if (candidate.gap > most_gap && !at_precision(scene, candidate)) {
                 if (candidate.faces.size() > finding.refused.size()) finding.refused = std::move(candidate.faces);

@@ -13,18 +13,6 @@ namespace {
 /// Seed patches do not cross edges sharper than this; growing does, by its own scale.
 constexpr double crease_angle = 40 * std::numbers::pi / 180;
 
-std::vector<float> face_heights(const mesh::WorkMesh& mesh) {
-    std::vector<float> heights(mesh.face_count());
-    runtime::parallel_for(heights.size(), 16384, [&](std::size_t f) {
-        double longest = 0;
-        for (int k = 0; k < 3; ++k) {
-            longest = std::max(longest, squared_norm(mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)));
-        }
-        heights[f] = static_cast<float>(longest > 0 ? 2 * mesh.areas[f] / std::sqrt(longest) : 0);
-    });
-    return heights;
-}
-
 std::vector<std::uint8_t> find_creases(const mesh::WorkMesh& mesh) {
     std::vector<std::uint8_t> creases(mesh.face_count(), 0);
     const double sharp = std::cos(crease_angle);
@@ -106,8 +94,8 @@ double dihedral(const mesh::WorkMesh& mesh, std::size_t f, std::size_t g) {
 
 Scene build_scene(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
     Scene scene{mesh, control, choose_tolerances(mesh), {}, {}, {}, {}, 0, {}};
-    scene.facets = find_facets(mesh, scene.tolerances, control);
     scene.heights = face_heights(mesh);
+    scene.facets = find_facets(mesh, scene.tolerances, scene.heights, control);
     scene.creases = find_creases(mesh);
     find_charts(scene);
     find_depths(scene);

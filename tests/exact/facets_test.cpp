@@ -18,7 +18,7 @@ Built build(const std::vector<double>& positions, const std::vector<std::uint32_
     Built b;
     b.mesh = mesh::build_work_mesh({positions, triangles, {}}, control);
     b.tolerances = choose_tolerances(b.mesh);
-    b.facets = find_facets(b.mesh, b.tolerances, control);
+    b.facets = find_facets(b.mesh, b.tolerances, face_heights(b.mesh), control);
     return b;
 }
 
