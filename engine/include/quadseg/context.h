@@ -37,7 +37,8 @@ class QUADSEG_API Context {
     void cancel() noexcept;
     bool cancelled() const noexcept;
 
-    /// The call stops within 50 ms of the deadline and returns its best partial result, marked.
+    /// The call stops soon after the deadline (aim: 50 ms; figures in tests/RELIABILITY.md) and returns its best
+    /// partial result, marked.
     void set_deadline(Clock::time_point when);
     /// Deadline `seconds` from now. Throws Error invalid_argument unless seconds > 0.
     void set_time_limit(double seconds);

@@ -78,7 +78,7 @@ typedef int32_t (*quadseg_progress_function)(const quadseg_progress* progress, v
 /// A context without any limit. Destroy it when no call uses it any more; null is allowed there.
 QUADSEG_API quadseg_status quadseg_context_create(quadseg_context** context);
 QUADSEG_API void quadseg_context_destroy(quadseg_context* context);
-/// Stops the calls that use this context within 50 ms. For good: a cancelled context stays cancelled.
+/// Stops the calls that use this context soon (aim: 50 ms). For good: a cancelled context stays cancelled.
 QUADSEG_API void quadseg_context_cancel(quadseg_context* context);
 /// 1 or 0.
 QUADSEG_API int32_t quadseg_context_cancelled(const quadseg_context* context);
