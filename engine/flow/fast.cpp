@@ -75,7 +75,7 @@ class FastFlow {
         result_.regions = partition::compact(labels_);
         result_.labels = std::move(labels_);
         if (result_.partial) {
-            result_.stop = control_.should_stop() ? StopReason::cancelled : StopReason::deadline;
+            result_.stop = control_.cancelled() ? StopReason::cancelled : StopReason::deadline;
         } else if (fast_.regions > 0) {
             result_.stop = result_.regions == fast_.regions ? StopReason::regions : StopReason::converged;
         } else {

@@ -254,12 +254,7 @@ FlowResult run_hierarchical(const FlowInput& input) {
         result.partial = true;
     }
     if (result.partial) {
-        try {
-            input.control.check();
-            result.stop = StopReason::cancelled;
-        } catch (const runtime::Stopped& stopped) {
-            result.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
-        }
+        result.stop = input.control.cancelled() ? StopReason::cancelled : StopReason::deadline;
     } else if (input.options.regions == 0) {
         result.stop = StopReason::tolerance;
     } else {

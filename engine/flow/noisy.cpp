@@ -62,7 +62,7 @@ class NoisyFlow {
         }
         result_.regions = partition::compact(labels_);
         result_.labels = std::move(labels_);
-        if (result_.partial) result_.stop = control_.should_stop() ? StopReason::cancelled : StopReason::deadline;
+        if (result_.partial) result_.stop = control_.cancelled() ? StopReason::cancelled : StopReason::deadline;
         return std::move(result_);
     }
 

@@ -39,6 +39,10 @@ bool RunControl::should_stop() const noexcept {
     return state_->cancelled.load(std::memory_order_relaxed) || state_->past_deadline();
 }
 
+bool RunControl::cancelled() const noexcept {
+    return state_ && state_->cancelled.load(std::memory_order_relaxed);
+}
+
 void RunControl::check() const {
     if (!state_ || ignore_.load(std::memory_order_relaxed)) return;
     if (state_->cancelled.load(std::memory_order_relaxed)) throw Stopped{false};

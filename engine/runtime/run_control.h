@@ -21,6 +21,8 @@ class RunControl {
     explicit RunControl(Context* context);
 
     bool should_stop() const noexcept;
+    /// Why a call that was stopped was stopped: cancelled, else its deadline has passed.
+    bool cancelled() const noexcept;
     /// Throws Stopped when cancelled or past the deadline. Call at least every 10 ms of work (a chunk of ≤ ~20,000
     /// faces).
     void check() const;

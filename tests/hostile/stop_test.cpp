@@ -220,5 +220,28 @@ TEST(StopsAtOnce, TheSegmenterToo) {
     EXPECT_EQ(broken_rule(part.mesh.view(), s.result()), "");
 }
 
+/// Segmenter::run() called a deadline a cancellation, for its flows asked only whether they were to stop.
+TEST(StopsAtOnce, TheSegmenterSaysWhy) {
+    const datasets::Generated clean = datasets::generate("flange", 30000);
+    const datasets::Generated noisy = datasets::generate("flange", 30000, 1e-3);
+    Options paper, hierarchical;
+    paper.preset = hierarchical.preset = Preset::paper;
+    hierarchical.method = Method::hierarchical;
+    for (const auto& [part, options] :
+         {std::pair{&clean, Options()}, {&noisy, Options()}, {&clean, paper}, {&clean, hierarchical}}) {
+        for (const bool by_deadline : {true, false}) {
+            Context context;
+            Segmenter s(part->mesh.view(), options, &context);
+            if (by_deadline) {
+                context.set_time_limit(1e-3);
+            } else {
+                context.cancel();
+            }
+            EXPECT_EQ(s.run(), by_deadline ? StopReason::deadline : StopReason::cancelled);
+            EXPECT_EQ(s.labels().size(), part->mesh.triangles.size() / 3);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace quadseg::test
