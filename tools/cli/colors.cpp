@@ -52,6 +52,20 @@ Rgb type_color(SurfaceType type) {
     return legend[static_cast<std::size_t>(type)];
 }
 
+Rgb error_color(double share) {
+    constexpr std::array<std::array<double, 3>, 5> stops{
+        {{49, 84, 178}, {70, 170, 200}, {110, 190, 100}, {245, 205, 70}, {205, 45, 40}}};
+    // What is no number is an error as well.
+    const double place = share >= 0 && share < 1 ? share * static_cast<double>(stops.size() - 1) : stops.size() - 1.0;
+    const auto below = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+    const double t = place - static_cast<double>(below);
+    Rgb color{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        color[c] = static_cast<std::uint8_t>(std::lround((1 - t) * stops[below][c] + t * stops[below + 1][c]));
+    }
+    return color;
+}
+
 std::vector<std::uint8_t> face_colors(std::span<const std::int32_t> labels, std::span<const Rgb> color_of_region) {
     std::vector<std::uint8_t> rgb(3 * labels.size());
     for (std::size_t f = 0; f < labels.size(); ++f) {

@@ -13,6 +13,7 @@ Command add_segment(CLI::App& app);
 Command add_info(CLI::App& app);
 Command add_simplify(CLI::App& app);
 Command add_compare(CLI::App& app);
+Command add_picture(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_batch(CLI::App& app);
 Command add_batch_item(CLI::App& app);

@@ -11,6 +11,8 @@
 #include <embree3/rtcore.h>
 #include <limits>
 #include <memory>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace quadseg::cli {
@@ -43,6 +45,20 @@ void extend(const MeshView& mesh, Vec3& low, Vec3& high) {
             high[k] = std::max(high[k], x);
         }
     }
+}
+
+/// And the diagonal of A.
+std::pair<Frame, double> common_frame(const MeshView& a, const MeshView& b) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3 low{infinity, infinity, infinity}, high = -low;
+    extend(a, low, high);
+    const double diagonal = norm(high - low);
+    extend(b, low, high);
+    Frame frame;
+    frame.centre = (low + high) / 2.0;
+    frame.size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    if (!(frame.size > 0)) frame.size = 1;
+    return {frame, diagonal};
 }
 
 UnitMesh to_unit(const MeshView& mesh, const Frame& frame) {
@@ -260,17 +276,23 @@ std::array<double, 3> nearest_on_triangle(const std::array<double, 3>& p, const 
     return to_array(nearest(to_vec3(p), to_vec3(a), to_vec3(b), to_vec3(c)));
 }
 
+std::vector<double> vertex_distances(const MeshView& a, const MeshView& b, const Context& context) {
+    const Frame frame = common_frame(a, b).first;
+    const UnitMesh from = to_unit(a, frame), to = to_unit(b, frame);
+    const NearestPoints target(to);
+    std::vector<double> distance(from.points.size());
+    runtime::parallel_for(distance.size(), block, [&](std::size_t v) {
+        if (v % 64 == 0 && (context.cancelled() || context.past_deadline()))
+            throw Error(ErrorCode::cancelled, "stopped before the end");
+        distance[v] = target.distance(from.points[v]) * frame.size;
+    });
+    return distance;
+}
+
 MeshDistance measure_mesh_distance(const MeshView& a, const MeshView& b, std::size_t samples, const Context& context) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3 low{infinity, infinity, infinity}, high = -low;
-    extend(a, low, high);
     MeshDistance result;
-    result.diagonal = norm(high - low);
-    extend(b, low, high);
     Frame frame;
-    frame.centre = (low + high) / 2.0;
-    frame.size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    if (!(frame.size > 0)) frame.size = 1;
+    std::tie(frame, result.diagonal) = common_frame(a, b);
     const UnitMesh first = to_unit(a, frame), second = to_unit(b, frame);
     result.forward = one_sided(first, NearestPoints(second), samples, frame, context);
     result.backward = one_sided(second, NearestPoints(first), samples, frame, context);

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace quadseg::cli {
 
@@ -30,6 +31,9 @@ struct MeshDistance {
 /// Nearest points come from Embree's hierarchy over boxes; each distance is computed in double. Both meshes must have
 /// been checked (inspect()). Deterministic at any thread count. Throws Error (invalid_mesh, cancelled).
 MeshDistance measure_mesh_distance(const MeshView& a, const MeshView& b, std::size_t samples, const Context& context);
+
+/// Distance of every vertex of A from the surface of B, input unit; as exact as measure_mesh_distance().
+std::vector<double> vertex_distances(const MeshView& a, const MeshView& b, const Context& context);
 
 /// Nearest point of the triangle to p.
 std::array<double, 3> nearest_on_triangle(const std::array<double, 3>& p, const std::array<double, 3>& a,

@@ -21,6 +21,8 @@ void draw_text(Image& image, std::size_t x, std::size_t y, std::string_view text
         const Glyph* glyph = nullptr;
         if (letter >= '0' && letter <= '9') glyph = &font[static_cast<std::size_t>(letter - '0')];
         if (letter >= 'a' && letter <= 'z') glyph = &font[static_cast<std::size_t>(letter - 'a') + 10];
+        if (letter == '-') fill_rectangle(image, x + scale, y + 3 * scale, 3 * scale, scale, color);
+        if (letter == '.') fill_rectangle(image, x + 2 * scale, y + 6 * scale, scale, scale, color);
         for (std::size_t row = 0; glyph != nullptr && row < glyph->size(); ++row) {
             for (std::size_t column = 0; column < 5; ++column) {
                 if (((*glyph)[row] >> (4 - column) & 1U) == 0) continue;

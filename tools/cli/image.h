@@ -19,7 +19,8 @@ struct Image {
 };
 
 void fill_rectangle(Image& image, std::size_t x, std::size_t y, std::size_t width, std::size_t height, Rgb color);
-/// Small letters, digits and spaces, each letter 6·scale wide and 9·scale high with its descender; clipped.
+/// Small letters, digits, minus, point and spaces, each letter 6·scale wide and 9·scale high with its descender;
+/// clipped.
 void draw_text(Image& image, std::size_t x, std::size_t y, std::string_view text, Rgb color, std::size_t scale);
 /// Throws Error file_write.
 void write_png(const std::string& path, const Image& image);

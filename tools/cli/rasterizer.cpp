@@ -31,7 +31,7 @@ struct Camera {
     }
 };
 
-Camera look_at(const MeshView& mesh, double width, double height) {
+Camera look_at(const MeshView& mesh, int upright, double width, double height) {
     Vec3 low = vertex(mesh, mesh.triangles.empty() ? 0 : mesh.triangles[0]);
     Vec3 high = low;
     for (const std::uint32_t v : mesh.triangles) {
@@ -47,6 +47,7 @@ Camera look_at(const MeshView& mesh, double width, double height) {
     for (const int a : {1, 0}) {
         if (extent[a] < 0.8 * extent[up]) up = a;
     }
+    if (upright >= 0) up = upright;
     const int side = (up + 1) % 3;
     const int back = (up + 2) % 3;
     const bool turned = extent[back] > extent[side];
@@ -81,6 +82,10 @@ Camera look_at(const MeshView& mesh, double width, double height) {
     return camera;
 }
 
+std::int32_t label_of(const Scene& scene, std::size_t face) {
+    return scene.labels.empty() ? 0 : scene.labels[face];
+}
+
 /// Normals at the corners of faces, averaged over the faces of one region around a vertex.
 std::vector<std::array<float, 3>> corner_normals(const Scene& scene) {
     const MeshView& mesh = scene.mesh;
@@ -112,7 +117,7 @@ std::vector<std::array<float, 3>> corner_normals(const Scene& scene) {
             for (std::uint32_t j = start[v]; average && j < start[v + 1]; ++j) {
                 const std::size_t g = order[j] / 3;
                 // A crease inside a region stays a crease.
-                if (scene.labels[g] == scene.labels[f] && dot(own, normalized(face_normal[g])) > 0.7) {
+                if (label_of(scene, g) == label_of(scene, f) && dot(own, normalized(face_normal[g])) > 0.7) {
                     sum += face_normal[g];
                 }
             }
@@ -140,7 +145,21 @@ class Canvas {
             std::array<Vec3, 3> p;
             for (std::size_t k = 0; k < 3; ++k)
                 p[k] = camera_.project(vertex(scene.mesh, scene.mesh.triangles[3 * f + k]));
-            fill(p, &normals[3 * f], scene.labels[f], color_of(scene, scene.labels[f]));
+            const std::int32_t label = label_of(scene, f);
+            const Rgb color = color_of(scene, label);
+            if (scene.error_shares.empty()) {
+                fill(p, &normals[3 * f], label, [&](double, double, double) { return color; });
+                continue;
+            }
+            std::array<double, 3> share{};
+            for (std::size_t k = 0; k < 3; ++k) share[k] = scene.error_shares[scene.mesh.triangles[3 * f + k]];
+            fill(p, &normals[3 * f], label, [&](double b0, double b1, double b2) {
+                return error_color(b0 * share[0] + b1 * share[1] + b2 * share[2]);
+            });
+        }
+        for (const Edge& edge : scene.edges) {
+            draw_line(camera_.project(vertex(scene.mesh, edge[0])), camera_.project(vertex(scene.mesh, edge[1])),
+                      scene.edge_width * static_cast<double>(oversampling), scene.edge_color);
         }
     }
 
@@ -167,7 +186,33 @@ class Canvas {
         return label >= 0 && i < scene.color_of_region.size() ? scene.color_of_region[i] : unlabelled_color;
     }
 
-    void fill(const std::array<Vec3, 3>& p, const std::array<float, 3>* normals, std::int32_t label, Rgb color) {
+    /// A line on the surface hides what lies behind it; what lies well in front hides the line.
+    void draw_line(const Vec3& from, const Vec3& to, double width, Rgb color) {
+        const double steps = std::ceil(2 * std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), 1.0}));
+        if (!(steps < 1e6)) return;
+        const double nearer = 0.004 * static_cast<double>(width_);
+        const double half = width / 2;
+        for (double i = 0; i <= steps; ++i) {
+            const Vec3 p = from + (to - from) * (i / steps);
+            const auto first_x = static_cast<std::int64_t>(std::floor(p.x - half + 0.5));
+            const auto first_y = static_cast<std::int64_t>(std::floor(p.y - half + 0.5));
+            for (std::int64_t y = first_y; static_cast<double>(y) < p.y + half; ++y) {
+                for (std::int64_t x = first_x; static_cast<double>(x) < p.x + half; ++x) {
+                    if (x < 0 || y < 0 || x >= static_cast<std::int64_t>(width_) ||
+                        y >= static_cast<std::int64_t>(samples_.size() / width_)) {
+                        continue;
+                    }
+                    Sample& sample = samples_[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)];
+                    if (sample.label == background || p.z + nearer < static_cast<double>(sample.depth)) continue;
+                    for (std::size_t c = 0; c < 3; ++c) sample.light[c] = static_cast<float>(color[c]);
+                }
+            }
+        }
+    }
+
+    template <class ColorAt>
+    void fill(const std::array<Vec3, 3>& p, const std::array<float, 3>* normals, std::int32_t label,
+              const ColorAt& color_at) {
         const double area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
         if (!(std::abs(area) > 1e-12)) return;
         const auto clamp_to = [](double x, std::size_t limit) {
@@ -197,7 +242,7 @@ class Canvas {
                     const auto i = static_cast<std::size_t>(a);
                     normal[a] = b0 * normals[0][i] + b1 * normals[1][i] + b2 * normals[2][i];
                 }
-                sample.light = shade(normalized(normal), color);
+                sample.light = shade(normalized(normal), color_at(b0, b1, b2));
             }
         }
     }
@@ -229,7 +274,7 @@ class Canvas {
 void draw_scene(Image& image, std::size_t width, std::size_t height, const Scene& scene) {
     const std::size_t w = width * oversampling;
     const std::size_t h = height * oversampling;
-    Canvas canvas(w, h, look_at(scene.mesh, static_cast<double>(w), static_cast<double>(h)));
+    Canvas canvas(w, h, look_at(scene.mesh, scene.up, static_cast<double>(w), static_cast<double>(h)));
     canvas.draw(scene);
     constexpr std::array<float, 3> line_color{28, 30, 36};
     for (std::size_t y = 0; y < height; ++y) {

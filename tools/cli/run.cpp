@@ -51,6 +51,7 @@ int run(int argc, const char* const* argv) {
         commands.emplace_back("info", add_info(app));
         commands.emplace_back("simplify", add_simplify(app));
         commands.emplace_back("compare", add_compare(app));
+        commands.emplace_back("picture", add_picture(app));
         commands.emplace_back("generate", add_generate(app));
         commands.emplace_back("batch", add_batch(app));
         commands.emplace_back("batch-item", add_batch_item(app));
