@@ -271,9 +271,43 @@ TEST_F(Batch, MemoryLimit) {
     EXPECT_NE(outcome.code, 0) << outcome.output;
     EXPECT_EQ(record_of(log(), "a.ply")["status"], "ok") << record_of(log(), "a.ply");
     EXPECT_EQ(record_of(log(), "large.ply")["kind"], "memory") << record_of(log(), "large.ply");
+    const std::string message = record_of(log(), "large.ply")["message"];
+    EXPECT_NE(message.find("limit is"), std::string::npos) << message;
     for (const char* bad : {"0", "much", "-1G", "5X"}) {
         EXPECT_EQ(run(batch(std::string("--memory-limit ") + bad, "x")).code, 2) << bad;
     }
+}
+
+/// Wherever in a job memory ends, that mesh alone fails, and of memory.
+TEST_F(Batch, AnyMemoryLimitIsAResultOrAKind) {
+    mesh("large.ply", "flange", 60000);
+    std::set<std::string> seen;
+    for (int megabytes = 2; megabytes <= 42; megabytes += 4) {
+        const std::string output = "out" + std::to_string(megabytes);
+        run(batch("--threads 4 --memory-limit " + std::to_string(megabytes) + "M", output));
+        const json record = record_of(log(output), "large.ply");
+        ASSERT_FALSE(record.is_null());
+        const std::string outcome = record["status"] == "failed" ? record["kind"] : record["status"];
+        EXPECT_TRUE(outcome == "memory" || outcome == "ok") << megabytes << " MB: " << record;
+        seen.insert(outcome);
+    }
+    EXPECT_TRUE(seen.contains("memory"));
+}
+
+TEST_F(Batch, NamesThatAreNoUtf8) {
+    mesh("a.ply", "plate", 600);
+    const std::string strange = folder / "meshes/b\xff\xc3.ply";
+    std::error_code error;
+    fs::copy_file(folder / "meshes/a.ply", strange, error);
+    if (error) GTEST_SKIP() << "this file system takes no such name";
+    ASSERT_EQ(run(batch("")).code, 0);
+    EXPECT_EQ(log().size(), 2U);
+    const json result = json::parse(read_text(folder / "out/b\xff\xc3.ply/result.json"));
+    EXPECT_NE(result["input"]["file"].get<std::string>().find("b\uFFFD"), std::string::npos);
+    EXPECT_EQ(run("info --json '" + strange + "'").code, 0);
+    EXPECT_EQ(run("segment '" + strange + "' --json -o " + (folder / "alone")).code, 0);
+    EXPECT_EQ(run("compare --json '" + strange + "' '" + strange + "'").code, 0);
+    EXPECT_EQ(run(batch("--resume --list")).output, "") << "both are done";
 }
 
 TEST_F(Batch, AnEarlierLogIsNotOverwritten) {

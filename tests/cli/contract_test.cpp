@@ -142,6 +142,18 @@ TEST_F(Contract, UnusableInputExitsWith3AndNamesThePlace) {
     expect(write("flat.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"), "");
 }
 
+TEST_F(Contract, AMemoryLimitRefusesBeforeTheWork) {
+    const std::string job = "segment " + plate(20000) + " -o " + (folder / "out");
+    for (const char* limit : {"100K", "2M"}) {  // too little to read it, too little to segment it
+        const Outcome outcome = run(job + " --memory-limit " + limit);
+        EXPECT_EQ(outcome.code, 3) << outcome.output;
+        EXPECT_NE(outcome.output.find("plate.ply"), std::string::npos) << outcome.output;
+        EXPECT_NE(outcome.output.find("limit is"), std::string::npos) << outcome.output;
+    }
+    EXPECT_EQ(run(job + " --memory-limit much").code, 2);
+    EXPECT_EQ(run(job + " --memory-limit 1G").code, 0);
+}
+
 TEST_F(Contract, OneFaceIsAMesh) {
     const std::string one = write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     const Outcome outcome = run("segment " + one + " -o " + (folder / "out"));

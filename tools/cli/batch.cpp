@@ -64,7 +64,7 @@ void check_same_options(const std::string& folder, const WorkerSettings& setting
     mine["options"] = settings.options;
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        write_text(path, mine.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+        write_text(path, indented(mine));
         return;
     }
     const Json theirs = Json::parse(file, nullptr, false);

@@ -3,8 +3,6 @@
 #include <quadseg/error.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <set>
 #include <thread>
 
@@ -50,23 +48,6 @@ int cores() {
 
 }  // namespace
 
-std::size_t parse_bytes(const std::string& option, const std::string& text) {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, value);
-    std::string unit(rest, end);
-    if (unit.size() > 1 && unit.ends_with('B')) unit.pop_back();
-    if (!unit.empty() && unit.ends_with('i')) unit.pop_back();
-    const std::size_t power = unit.empty() || unit == "B" ? 0 : std::string("KMGT").find(unit) + 1;
-    const double bytes = value * std::pow(1024.0, static_cast<double>(power));
-    if (error != std::errc() || unit.size() > 1 || (power == 0 && !unit.empty() && unit != "B") || !(bytes >= 1) ||
-        bytes > 1e18) {
-        throw Error(ErrorCode::invalid_argument,
-                    option + ": must be a number of bytes, like 500M or 2G, but is '" + text + "'");
-    }
-    return static_cast<std::size_t>(bytes);
-}
-
 void add_item_options(CLI::App& command, BatchArguments& a) {
     a.command = &command;
     add_options(command, a.segment);
@@ -78,13 +59,7 @@ void add_item_options(CLI::App& command, BatchArguments& a) {
         ->capture_default_str()
         ->check(CLI::PositiveNumber)
         ->group(group);
-    if (CLI::Option* option = command.get_option_no_throw("--memory-limit")) {
-        option->group(group);
-        a.segment_bounds_memory = true;
-    } else {
-        command.add_option("--memory-limit", a.memory_limit, "Bytes a mesh's process may use, like 500M or 2G")
-            ->group(group);
-    }
+    command.get_option("--memory-limit")->description("Bytes a mesh's process may use, like 500M or 2G")->group(group);
 }
 
 int job_count(const BatchArguments& a) {
@@ -98,12 +73,7 @@ WorkerSettings worker_settings(BatchArguments& a) {
     settings.options = given_options(*a.command);
     settings.timeout = a.segment.timeout;
     settings.grace = a.grace;
-    const CLI::Option* limit = a.command->get_option("--memory-limit");
-    if (limit->count() > 0) {
-        const std::string text = limit->results().front();
-        settings.memory_limit = parse_bytes("--memory-limit", text);
-        if (a.segment_bounds_memory) settings.bounds = {"--memory-limit", text};
-    }
+    settings.memory_limit = a.segment.memory_limit;
     return settings;
 }
 

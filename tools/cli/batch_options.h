@@ -19,9 +19,7 @@ struct BatchArguments {
     bool resume = false, retry = false, list = false;
     std::string shard = "1/1";
     double grace = 10;
-    std::string memory_limit;
-    bool segment_bounds_memory = false;  ///< `segment` has a --memory-limit of its own, and refuses in time
-    std::string name;                    ///< of the one mesh of `batch-item`
+    std::string name;  ///< of the one mesh of `batch-item`
 };
 
 /// Adds what one mesh of a batch and a whole one have in common.
@@ -29,8 +27,5 @@ void add_item_options(CLI::App& command, BatchArguments& arguments);
 /// Settings of the workers; checks the options of `segment`. Throws Error invalid_argument.
 WorkerSettings worker_settings(BatchArguments& arguments);
 int job_count(const BatchArguments& arguments);
-
-/// Bytes: a number with or without K, M, G, T (powers of 1024). Throws Error invalid_argument.
-std::size_t parse_bytes(const std::string& option, const std::string& text);
 
 }  // namespace quadseg::cli

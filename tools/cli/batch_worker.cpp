@@ -52,6 +52,15 @@ std::string last_line(const fs::path& path) {
     return last.substr(0, longest);
 }
 
+/// Also what TBB says where the limit has no room for a thread's stack.
+bool of_memory(const std::string& message) {
+    return message.find("out of memory") != std::string::npos || message.find("pthread_create") != std::string::npos;
+}
+
+std::string limit_text(std::size_t bytes) {
+    return bytes == 0 ? "" : "; the limit is " + std::to_string(bytes >> 20U) + " MiB";
+}
+
 /// Everything of a folder on disk, the folder last.
 void sync_tree(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -183,7 +192,8 @@ Json Worker::outcome() const {
         case exit_not_started:
             return failed("defect", "the process could not be started");
         default:
-            return failed(message.find("out of memory") != std::string::npos ? "memory" : "defect", message);
+            if (!of_memory(message)) return failed("defect", message);
+            return failed("memory", message + limit_text(settings_->memory_limit));
     }
 }
 

@@ -7,6 +7,7 @@
 #include "tools/cli/exit_code.h"
 #include "tools/cli/files.h"
 #include "tools/cli/hausdorff.h"
+#include "tools/cli/picture.h"
 #include "tools/cli/report.h"
 #include "tools/cli/stop_signals.h"
 
@@ -14,6 +15,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <vector>
 
 namespace quadseg::cli {
 namespace {
@@ -24,6 +26,9 @@ struct Arguments {
     int threads = 0;
     double timeout = 0;
     bool json = false;
+    std::string picture;
+    double picture_scale = 0;
+    std::string up;
 };
 
 /// Ten a face, so that no face of a usual mesh goes without, within what takes seconds.
@@ -70,6 +75,19 @@ void print(const MeshDistance& distance) {
     std::printf("diagonal of A: %.9g\n", distance.diagonal);
 }
 
+/// The first mesh in the colours of its vertices' distances from the second.
+void write_error_picture(const Arguments& arguments, const Mesh& a, const Mesh& b, const MeshDistance& distance,
+                         const Context& context) {
+    std::vector<double> errors = vertex_distances(a.view(), b.view(), context);
+    for (double& error : errors) error = relative(error, distance);
+    PictureContent content;
+    content.errors = errors;
+    content.largest_error =
+        arguments.picture_scale > 0 ? arguments.picture_scale : relative(distance.forward.max, distance);
+    content.up = arguments.up.empty() ? -1 : arguments.up[0] - 'x';
+    write_picture(arguments.picture, a.view(), content);
+}
+
 int run_compare(const Arguments& arguments) {
     Context context;
     context.set_threads(arguments.threads);
@@ -85,6 +103,7 @@ int run_compare(const Arguments& arguments) {
     runtime::in_arena(arguments.threads, [&] {
         distance = measure_mesh_distance(meshes[0].view(), meshes[1].view(),
                                          sample_count(arguments, meshes[0], meshes[1]), context);
+        if (!arguments.picture.empty()) write_error_picture(arguments, meshes[0], meshes[1], distance, context);
     });
     if (arguments.json) {
         Json json;
@@ -94,7 +113,7 @@ int run_compare(const Arguments& arguments) {
         json["a_to_b"] = one_sided_json(distance.forward, distance);
         json["b_to_a"] = one_sided_json(distance.backward, distance);
         json["symmetric"] = lengths_json(distance.max, distance.mean, distance.rms, distance);
-        std::cout << json.dump(1) << '\n';
+        std::cout << indented(json);
     } else {
         print(distance);
     }
@@ -120,6 +139,17 @@ Command add_compare(CLI::App& app) {
         ->check(CLI::Range(0, 4096));
     command->add_option("--timeout", arguments->timeout, "Seconds")->check(CLI::PositiveNumber);
     command->add_flag("--json", arguments->json, "Print JSON");
+    CLI::Option* picture = command->add_option("--picture", arguments->picture,
+                                               "PNG of the first mesh in the colours of its distances from the second");
+    command
+        ->add_option("--picture-scale", arguments->picture_scale,
+                     "Distance that is red, relative to the diagonal; 0: the largest")
+        ->check(CLI::NonNegativeNumber)
+        ->needs(picture)
+        ->capture_default_str();
+    command->add_option("--up", arguments->up, "Axis that stands upright in the picture")
+        ->check(CLI::IsMember({"x", "y", "z"}))
+        ->needs(picture);
     return [arguments] { return run_compare(*arguments); };
 }
 

@@ -62,7 +62,7 @@ Command add_info(CLI::App& app) {
         const MeshReport report =
             on_file(arguments->mesh, [&] { return inspect(mesh.view(), arguments->features, &context); });
         if (arguments->json) {
-            std::cout << input_json(arguments->mesh, mesh, report).dump(1) << '\n';
+            std::cout << indented(input_json(arguments->mesh, mesh, report));
         } else {
             print(mesh, report, arguments->features);
         }

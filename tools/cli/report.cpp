@@ -169,4 +169,8 @@ Json result_json(const std::string& file, const Mesh& mesh, const Options& optio
     return json;
 }
 
+std::string indented(const Json& json) {
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace quadseg::cli

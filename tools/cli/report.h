@@ -18,5 +18,7 @@ Json options_json(const Options& options);
 /// Parameters of a typed surface, by the names of its type.
 Json parameters_json(const Surface& surface);
 Json result_json(const std::string& file, const Mesh& mesh, const Options& options, const Segmentation& segmentation);
+/// Indented, with a newline at its end. Bytes of file names that are no UTF-8 become U+FFFD.
+std::string indented(const Json& json);
 
 }  // namespace quadseg::cli

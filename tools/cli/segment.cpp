@@ -83,6 +83,7 @@ int run_segment(SegmentArguments& a) {
     Context context;
     context.set_threads(a.threads);
     if (a.timeout > 0) context.set_time_limit(a.timeout);
+    context.set_memory_limit(a.memory_limit);
     const StopSignals signals(context);
     ProgressDisplay progress(a.progress_mode());
 
@@ -103,7 +104,7 @@ int run_segment(SegmentArguments& a) {
     result.seconds.total = seconds_since(start);
     result.peak_bytes = std::max(result.peak_bytes, peak_resident_bytes());
     // Last, so that a folder with a result.json is complete.
-    const std::string json = result_json(a.mesh, mesh, a.options, result).dump(1) + "\n";
+    const std::string json = indented(result_json(a.mesh, mesh, a.options, result));
     write_text(a.folder + "/result.json", json);
     progress.finish();
     if (a.json) {

@@ -3,6 +3,7 @@
 #include <quadseg/error.h>
 
 #include <charconv>
+#include <cmath>
 
 namespace quadseg::cli {
 namespace {
@@ -60,6 +61,8 @@ void add_running(CLI::App& command, SegmentArguments& a) {
     command.add_option("--timeout", a.timeout, "Seconds; then the best partial result is written, exit code 4")
         ->check(CLI::PositiveNumber)
         ->group(group);
+    command.add_option("--memory-limit", a.memory, "Bytes, like 500M or 2G: a mesh that needs more is refused at once")
+        ->group(group);
     command.add_option("--progress", a.progress, "On stderr: a bar on a terminal, lines otherwise")
         ->check(CLI::IsMember({"auto", "always", "never"}))
         ->capture_default_str()
@@ -116,6 +119,23 @@ void add_paper(CLI::App& command, SegmentArguments& a) {
 
 }  // namespace
 
+std::size_t parse_bytes(const std::string& option, const std::string& text) {
+    double value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    std::string unit(rest, end);
+    if (unit.size() > 1 && unit.ends_with('B')) unit.pop_back();
+    if (!unit.empty() && unit.ends_with('i')) unit.pop_back();
+    const std::size_t power = unit.empty() || unit == "B" ? 0 : std::string("KMGT").find(unit) + 1;
+    const double bytes = value * std::pow(1024.0, static_cast<double>(power));
+    if (error != std::errc() || unit.size() > 1 || (power == 0 && !unit.empty() && unit != "B") || !(bytes >= 1) ||
+        bytes > 1e18) {
+        throw Error(ErrorCode::invalid_argument,
+                    option + ": must be a number of bytes, like 500M or 2G, but is '" + text + "'");
+    }
+    return static_cast<std::size_t>(bytes);
+}
+
 ProgressMode SegmentArguments::progress_mode() const {
     if (quiet || progress == "never") return ProgressMode::never;
     return progress == "always" ? ProgressMode::always : ProgressMode::automatic;
@@ -151,6 +171,7 @@ void resolve(SegmentArguments& a) {
         }
         o.coarse = static_cast<std::int64_t>(faces);
     }
+    if (!a.memory.empty()) a.memory_limit = parse_bytes("--memory-limit", a.memory);
     std::string problems;
     for (const std::string& problem : validate(o)) problems += (problems.empty() ? "" : "\n         ") + problem;
     if (!problems.empty()) throw Error(ErrorCode::invalid_argument, problems);
