@@ -72,8 +72,7 @@ class FastFlow {
         } catch (const runtime::Stopped&) {
             result_.partial = true;
         }
-        result_.regions = partition::compact(labels_);
-        result_.labels = std::move(labels_);
+        hand_over();
         if (result_.partial) {
             result_.stop = control_.cancelled() ? StopReason::cancelled : StopReason::deadline;
         } else if (fast_.regions > 0) {
@@ -85,6 +84,18 @@ class FastFlow {
     }
 
   private:
+    /// Numbers the regions by their first face, their fits alike.
+    void hand_over() {
+        std::vector<std::int32_t> renumbered;
+        result_.regions = partition::compact(labels_, renumbered);
+        result_.labels = std::move(labels_);
+        if (result_.partial || fits_.empty()) return;
+        result_.fits.resize(result_.regions);
+        for (std::size_t r = 0; r < renumbered.size(); ++r) {
+            if (renumbered[r] >= 0) result_.fits[static_cast<std::size_t>(renumbered[r])] = std::move(fits_[r]);
+        }
+    }
+
     /// The coarsest partition there is, so that a flow stopped early has a result.
     void start_from_parts() {
         if (passage_.barriers == nullptr && passage_.active.empty()) {
@@ -199,7 +210,7 @@ class FastFlow {
         if (result_.partial) return;
         control_.report(Phase::fine, 0.8, count_, relaxed.energy);
         if (fast_.regions > 0) {
-            restore_count(relaxed.fits);
+            if (!restore_count(relaxed.fits)) fits_ = std::move(relaxed.fits);
         } else if (fast_.smallest_region > 1) {
             absorb(relaxed.fits);
         }
@@ -231,15 +242,15 @@ class FastFlow {
     }
 
     /// Relaxation may leave labels without faces: as many regions as are missing are won by cutting the worst ones up
-    /// finely enough and merging again.
-    void restore_count(const std::vector<quadric::RegionFit>& fits) {
+    /// finely enough and merging again. False: none is missing.
+    bool restore_count(const std::vector<quadric::RegionFit>& fits) {
         std::vector<std::size_t> size(count_, 0);
         for (const std::int32_t label : labels_) {
             if (label >= 0) ++size[static_cast<std::size_t>(label)];
         }
         const auto present =
             static_cast<std::size_t>(std::count_if(size.begin(), size.end(), [](std::size_t s) { return s > 0; }));
-        if (present >= fast_.regions) return;
+        if (present >= fast_.regions) return false;
         const std::size_t missing = fast_.regions - present;
         constexpr std::size_t choice = 4;  // fragments for each region wanted of them
         std::vector<std::uint8_t> cut(count_, 0);
@@ -266,6 +277,7 @@ class FastFlow {
         }
         count_ = partition::connected_parts(passage_, labels_);
         merge_down();
+        return true;
     }
 
     /// Regions that their surface explains worst fall apart into their leaves, to be merged in another way.
@@ -291,6 +303,7 @@ class FastFlow {
     Labels leaves_, labels_;
     std::size_t count_ = 0;
     std::vector<partition::MergeRegion> regions_;
+    std::vector<quadric::RegionFit> fits_;  ///< of labels_ as they are
     FlowResult result_;
 };
 

@@ -25,6 +25,9 @@ constexpr std::size_t choice_points = 64;        ///< types are chosen on so man
 constexpr std::size_t refinement_points = 2000;  ///< … and refined on so many
 constexpr std::size_t general_points = 500;      ///< general quadrics, whose distances are dear
 constexpr std::size_t fit_faces = 16384;         ///< the default preset's quadric of a region is fitted to so many
+// Regions made by energy follow no surface exactly: a few vertices tell the type, a few steps the parameters.
+constexpr std::size_t energy_choice_points = 32, energy_refinement_points = 96;
+constexpr int choice_steps = 15, energy_choice_steps = 5, energy_refinement_steps = 6;
 constexpr std::size_t kept_points = 24;
 /// RMS distance, in multiples of the better one, up to which a simpler type is not meaningfully worse.
 constexpr double equal_ratio = 1.5;
@@ -82,9 +85,9 @@ bool is_special(SurfaceType type) {
 /// Chooses the type of one region's surface on a small sample.
 class TypeChoice {
   public:
-    TypeChoice(const PointSet& p, const Surface& start, double floor, bool torus, bool settle_early)
+    TypeChoice(const PointSet& p, const Surface& start, double floor, bool torus, bool settle_early, int steps)
         : p_(p), start_(start), floor_(floor), torus_(torus), settle_early_(settle_early) {
-        options_.iterations = 15;
+        options_.iterations = steps;
     }
 
     /// The simplest type that is not meaningfully worse than the best; ok is false where nothing can be fitted.
@@ -183,7 +186,7 @@ class Finisher {
           regions_(regions),
           flow_(flow),
           paper_(options_.preset == Preset::paper),
-          precision_(exact::coordinate_precision(input.mesh)) {
+          precision_(input.control.should_stop() ? 0 : exact::coordinate_precision(input.mesh)) {
         if (paper_) {
             policy_ = method_policy(options_);
         } else {
@@ -196,14 +199,20 @@ class Finisher {
     FinalSurface run(std::size_t r) const {
         if (input_.control.should_stop()) return roughly(r);
         FinalSurface result;
-        const RegionSample sample = sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), refinement_points);
+        const RegionSample sample =
+            by_energy(r) ? sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), energy_refinement_points,
+                                         energy_choice_points)
+                         : sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), refinement_points);
         describe(sample, r, result);
         const bool known = r < flow_.surfaces.size() && flow_.surfaces[r].type != SurfaceType::freeform;
         if (known) {
             keep_verified(simplified(flow_.surfaces[r], sample, result.extent, regions_.size(r)), sample, result);
-            if (!quadric_of(result.surface, result.centroid, result.quadric)) fit_quadric(r, result);
+            if (!quadric_of(result.surface, result.centroid, result.quadric)) {
+                fit_quadric(r, result);
+                result.loop_energy = {};
+            }
         } else {
-            fit_quadric(r, result);
+            if (!take_fit(r, result)) fit_quadric(r, result);
             result.loop_proxy = result.quadric;
             choose(r, sample, result);
         }
@@ -214,6 +223,9 @@ class Finisher {
     }
 
   private:
+    /// Neither verified on its vertices nor to be judged by a known noise.
+    bool by_energy(std::size_t r) const { return !paper_ && !(flow_.noise > 0) && r >= flow_.surfaces.size(); }
+
     const std::uint32_t* faces(std::size_t r) const { return regions_.face.data() + regions_.begin[r]; }
 
     void describe(const RegionSample& sample, std::size_t r, FinalSurface& result) const {
@@ -279,6 +291,14 @@ class Finisher {
         }
     }
 
+    /// The fit that the flow ended with; planes are fitted again, to a tighter tolerance.
+    bool take_fit(std::size_t r, FinalSurface& result) const {
+        if (paper_ || r >= flow_.fits.size() || flow_.fits[r].proxy.planar() || !flow_.fits[r].valid) return false;
+        result.quadric = flow_.fits[r].proxy;
+        result.loop_energy = flow_.fits[r].energy;
+        return true;
+    }
+
     void fit_quadric(std::size_t r, FinalSurface& result) const {
         const std::size_t size = regions_.size(r);
         const std::size_t count = paper_ ? size : std::min(size, fit_faces);
@@ -290,6 +310,7 @@ class Finisher {
             paper_ ? policy_.fit(soup.soup()) : quadric::fit_region(soup.soup(), fit_options_);
         result.quadric = fit.proxy;
         result.one_sheet = fit.valid || quadric::is_valid(fit.proxy, soup.soup());
+        if (!paper_ && count == size) result.loop_energy = fit.energy;
     }
 
     /// The proxy as a surface without a better name than its eigenvalues give.
@@ -307,14 +328,15 @@ class Finisher {
         result.surface = own;
         if (paper_ && (options_.method != Method::quadric || result.quadric.planar())) return;
         const bool free_form = !paper_ && r < flow_.surfaces.size();
-        const RegionSample few = sample.thinned(choice_points);
+        const RegionSample few = sample.thinned(by_energy(r) ? energy_choice_points : choice_points);
         const double rounding = 1e-12 * result.extent;
         const double floor = std::max({noise_margin * flow_.noise, rounding, 3 * precision_});
         const double tolerance = free_form ? std::max(floor, exact_tolerance) : floor;
         // The noise is known: what is farther off is free-form.
         const bool judged = free_form || (!paper_ && flow_.noise > 0);
         // The paper's proxies are quadrics.
-        TypeChoice choice(few.all(), own, floor, !paper_, !paper_ && !free_form);
+        TypeChoice choice(few.all(), own, floor, !paper_, !paper_ && !free_form,
+                          by_energy(r) ? energy_choice_steps : choice_steps);
         const bool general_fails = judged && fails(own, few, 2 * tolerance);
         SurfaceFit fit = general_fails ? choice.torus(tolerance) : choice.run();
         const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
@@ -323,14 +345,16 @@ class Finisher {
                        (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few))))) {
             const SurfaceFit trimmed = free_form ? mostly_exact(few, tolerance) : SurfaceFit{};
             if (trimmed.ok) {
-                refine_choice(trimmed.surface, sample, own, result);
+                refine_choice(trimmed.surface, sample, own, {}, result);
                 (void)quadric_of(result.surface, result.centroid, result.quadric);
             } else {
                 describe_free_form(sample, result);
             }
             return;
         }
-        if (fit.ok) refine_choice(fit.surface, sample, own, result);
+        surface::FitOptions options;
+        if (by_energy(r)) options.iterations = energy_refinement_steps;
+        if (fit.ok) refine_choice(fit.surface, sample, own, options, result);
         (void)quadric_of(result.surface, result.centroid, result.quadric);
     }
 
@@ -385,17 +409,17 @@ class Finisher {
         result.surface.outward = blend.outward;
     }
 
-    void refine_choice(const Surface& chosen, const RegionSample& sample, const Surface& own,
-                       FinalSurface& result) const {
+    static void refine_choice(const Surface& chosen, const RegionSample& sample, const Surface& own,
+                              const surface::FitOptions& options, FinalSurface& result) {
         result.surface = chosen;
         if (chosen.type <= SurfaceType::torus) {
-            const SurfaceFit refined = surface::refine(chosen, sample.all());
+            const SurfaceFit refined = surface::refine(chosen, sample.all(), options);
             if (refined.ok) result.surface = refined.surface;
             return;
         }
         if (chosen.coefficients == own.coefficients || sample.points.size() <= choice_points) return;
         const SurfaceFit refined =
-            surface::fit_type(chosen.type, sample.thinned(general_points).all(), chosen.coefficients);
+            surface::fit_type(chosen.type, sample.thinned(general_points).all(), chosen.coefficients, options);
         if (refined.ok) result.surface = refined.surface;
     }
 
@@ -413,6 +437,7 @@ class Finisher {
         FinalSurface result;
         const std::size_t size = regions_.size(r);
         const std::size_t count = std::min(size, std::max<std::size_t>(2, rough_faces / regions_.count()));
+        if (count < least_rough_fit) return rough_plane(r, count);
         std::vector<std::uint32_t> chosen(count);
         for (std::size_t i = 0; i < count; ++i) chosen[i] = faces(r)[i * size / count];
         partition::GatheredRegion soup;
@@ -421,19 +446,31 @@ class Finisher {
         double sum = 0;
         for (const Vec3& p : soup.corners) sum += squared_norm(p - result.centroid);
         result.extent = std::sqrt(sum / static_cast<double>(soup.corners.size()));
-        if (count >= least_rough_fit) {
-            result.quadric = (paper_ ? policy_.fit(soup.soup()) : quadric::fit_region(soup.soup(), fit_options_)).proxy;
-            result.surface = named(result);
-        } else {
-            Vec3 normal;
-            for (std::size_t i = 0; i < count; ++i) normal += soup.normals[i] * soup.areas[i];
-            if (!(squared_norm(normal) > 0)) normal = {0, 0, 1};
-            result.surface.type = SurfaceType::plane;
-            result.surface.axis = to_array(normalized(normal));
-            result.surface.point = to_array(result.centroid);
-            (void)quadric_of(result.surface, result.centroid, result.quadric);
-        }
+        result.quadric = (paper_ ? policy_.fit(soup.soup()) : quadric::fit_region(soup.soup(), fit_options_)).proxy;
+        result.surface = named(result);
         set_coefficients(result);
+        return result;
+    }
+
+    /// The plane of the mean normal: nothing is allocated, for there may be as many regions as leaves.
+    FinalSurface rough_plane(std::size_t r, std::size_t count) const {
+        FinalSurface result;
+        const std::size_t size = regions_.size(r);
+        Vec3 normal;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t f = faces(r)[i * size / count];
+            result.centroid += mesh_.centroid(f) / static_cast<double>(count);
+            normal += mesh_.normals[f] * mesh_.areas[f];
+        }
+        if (!(squared_norm(normal) > 0)) normal = {0, 0, 1};
+        result.surface.type = SurfaceType::plane;
+        result.surface.axis = to_array(normalized(normal));
+        result.surface.point = to_array(result.centroid);
+        result.surface.coefficients = surface::to_coefficients(result.surface);
+        result.quadric.origin = result.centroid;
+        result.quadric.c = result.surface.coefficients;
+        result.quadric.c[0] = 0;
+        result.quadric.gradient_floor = 0.05;
         return result;
     }
 
@@ -468,10 +505,14 @@ std::vector<FinalSurface> final_surfaces(const FlowInput& input, const partition
     // Large regions first: the last task to start should be a short one.
     std::vector<std::uint32_t> order(regions.count());
     for (std::size_t r = 0; r < order.size(); ++r) order[r] = static_cast<std::uint32_t>(r);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return regions.size(a) != regions.size(b) ? regions.size(a) > regions.size(b) : a < b;
-    });
-    runtime::parallel_for(order.size(), 1, [&](std::size_t i) { result[order[i]] = finisher.run(order[i]); });
+    const bool stopped = input.control.should_stop();  // then all are short, and memory is read in its order
+    if (!stopped) {
+        std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return regions.size(a) != regions.size(b) ? regions.size(a) > regions.size(b) : a < b;
+        });
+    }
+    runtime::parallel_for(order.size(), stopped ? 256 : 1,
+                          [&](std::size_t i) { result[order[i]] = finisher.run(order[i]); });
     return result;
 }
 

@@ -14,7 +14,8 @@ struct FinalSurface {
     quadric::Proxy quadric;  ///< the same as a quadric (torus, blend, freeform: the best one)
     /// The proxy of least energy, which the energies speak of, where the surface is a later refit to the vertices.
     std::optional<quadric::Proxy> loop_proxy;
-    bool one_sheet = true;  ///< the region's foot points on the quadric lie on one sheet
+    std::optional<quadric::TriangleEnergy> loop_energy;  ///< loop_proxy's over all faces, where it is known
+    bool one_sheet = true;                               ///< the region's foot points on the quadric lie on one sheet
     // What the regularities between surfaces are judged by.
     std::vector<Vec3> points;  ///< a few vertices
     Vec3 centroid;

@@ -6,6 +6,7 @@
 #include "mesh/features.h"
 #include "mesh/work_mesh.h"
 #include "partition/regions.h"
+#include "quadric/region_fit.h"
 #include "runtime/run_control.h"
 
 #include <cstdint>
@@ -31,6 +32,8 @@ struct FlowResult {
     /// Empty, or one a region: the surface that the flow verified on the vertices (unit frame); type freeform: none, to
     /// be chosen.
     std::vector<Surface> surfaces;
+    /// Empty, or one a region: the complete fits to its faces, which the flow ended with.
+    std::vector<quadric::RegionFit> fits;
     double coarse_seconds = 0;  ///< spent on the simplified mesh
     double noise = 0;           ///< estimated standard deviation of the vertices, unit frame; 0: not estimated
 };

@@ -49,6 +49,7 @@ void unify_polygons(const mesh::WorkMesh& mesh, FlowResult& flow) {
         });
         for (std::size_t i = begin; i < end; ++i) flow.labels[members[i].second] = best->first;
     }
+    flow.fits.clear();
     const partition::Labels before = flow.labels;
     flow.regions = partition::split_disconnected(mesh, flow.labels);
     if (flow.surfaces.empty()) return;

@@ -52,14 +52,14 @@ void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const surface
 }
 
 /// Planes need no polynomials: ∫f² = |t|/12 (Σf_i² + (Σf_i)²), and the normals differ by a constant.
-void add_plane_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy, RegionQuality& q) {
+void add_plane_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy,
+                      quadric::TriangleEnergy& energy) {
     const Vec3 n{proxy.c[1], proxy.c[2], proxy.c[3]};
     const double length = norm(n), inverse = length > 0 ? 1 / length : 0;
     const Vec3 unit = n * inverse;
     const double offset = proxy.c[0] * inverse - dot(unit, proxy.origin);
     for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
         const double area = mesh.areas[*f];
-        q.area += area;
         if (!(area > 0)) continue;
         double sum = 0, squares = 0;
         for (int k = 0; k < 3; ++k) {
@@ -67,52 +67,58 @@ void add_plane_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quad
             sum += value;
             squares += value * value;
         }
-        q.energy.distance += area / 12 * (squares + sum * sum);
-        q.energy.normal += area * squared_norm(unit - mesh.normals[*f]);
-        q.gradient += area * length;
-        if (!(dot(unit, mesh.normals[*f]) > 0)) q.against += area;
+        energy.distance += area / 12 * (squares + sum * sum);
+        energy.normal += area * squared_norm(unit - mesh.normals[*f]);
     }
 }
 
-void add_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy, RegionQuality& q) {
+void add_energy(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy,
+                quadric::TriangleEnergy& energy) {
     if (proxy.planar()) {
-        add_plane_energy(mesh, faces, proxy, q);
+        add_plane_energy(mesh, faces, proxy, energy);
         return;
     }
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+        if (!(mesh.areas[*f] > 0)) continue;
+        const quadric::TriangleEnergy e = partition::face_energy(mesh, *f, proxy, true);
+        energy.distance += e.distance;
+        energy.normal += e.normal;
+    }
+}
+
+void add_gradient(const mesh::WorkMesh& mesh, const Faces& faces, const quadric::Proxy& proxy, RegionQuality& q) {
+    const bool planar = proxy.planar();
+    const Vec3 constant{proxy.c[1], proxy.c[2], proxy.c[3]};
+    const double length = norm(constant);
     for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
         const double area = mesh.areas[*f];
         q.area += area;
         if (!(area > 0)) continue;
-        const quadric::TriangleEnergy e = partition::face_energy(mesh, *f, proxy, true);
-        q.energy.distance += e.distance;
-        q.energy.normal += e.normal;
-        const Vec3 g = quadric::gradient(proxy.c, mesh.centroid(*f) - proxy.origin);
-        q.gradient += area * norm(g);
+        const Vec3 g = planar ? constant : quadric::gradient(proxy.c, mesh.centroid(*f) - proxy.origin);
+        q.gradient += area * (planar ? length : norm(g));
         if (!(dot(g, mesh.normals[*f]) > 0)) q.against += area;
     }
 }
 
-constexpr std::size_t block_faces = 4096, sampled_share = 64;
+/// Faces that the figures of a stopped call are estimated from, all regions together, at least one a block.
+constexpr std::size_t block_faces = 4096, sampled_faces = 4096, least_share = 64;
 
 RegionQuality measure_faces(const mesh::WorkMesh& mesh, const Faces& faces, const FinalSurface& final) {
     RegionQuality q;
     surface::SurfaceEvaluator(final.surface).visit([&](const auto& evaluator) {
         add_distances(mesh, faces, evaluator, q);
     });
-    add_energy(mesh, faces, final.quadric, q);
-    if (final.loop_proxy) {
-        RegionQuality loop;
-        add_energy(mesh, faces, *final.loop_proxy, loop);
-        q.energy = loop.energy;
-    }
+    add_gradient(mesh, faces, final.quadric, q);
+    if (!final.loop_energy) add_energy(mesh, faces, final.loop_proxy.value_or(final.quadric), q.energy);
     return q;
 }
 
-/// One face in 64 stands for all of them.
-RegionQuality estimate_faces(const mesh::WorkMesh& mesh, const Faces& faces, const FinalSurface& final) {
+/// One face in `share` stands for all of them.
+RegionQuality estimate_faces(const mesh::WorkMesh& mesh, const Faces& faces, const FinalSurface& final,
+                             std::size_t share) {
     const auto count = static_cast<std::size_t>(faces.second - faces.first);
     std::vector<std::uint32_t> chosen;
-    for (std::size_t i = 0; i < count; i += sampled_share) chosen.push_back(faces.first[i]);
+    for (std::size_t i = 0; i < count; i += share) chosen.push_back(faces.first[i]);
     RegionQuality q = measure_faces(mesh, {chosen.data(), chosen.data() + chosen.size()}, final);
     double area = 0;
     for (const std::uint32_t* f = faces.first; f != faces.second; ++f) area += mesh.areas[*f];
@@ -140,10 +146,11 @@ std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const par
         }
     }
     std::vector<RegionQuality> parts(blocks.size());
+    const std::size_t share = std::max(least_share, mesh.face_count() / sampled_faces);
     runtime::parallel_for(blocks.size(), 1, [&](std::size_t i) {
         const Block& block = blocks[i];
         const Faces faces(regions.face.data() + block.begin, regions.face.data() + block.end);
-        parts[i] = control.should_stop() ? estimate_faces(mesh, faces, surfaces[block.region])
+        parts[i] = control.should_stop() ? estimate_faces(mesh, faces, surfaces[block.region], share)
                                          : measure_faces(mesh, faces, surfaces[block.region]);
     });
     std::vector<RegionQuality> quality(regions.count());
@@ -156,6 +163,9 @@ std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const par
         q.energy.normal += parts[i].energy.normal;
         q.gradient += parts[i].gradient;
         q.against += parts[i].against;
+    }
+    for (std::size_t r = 0; r < quality.size(); ++r) {
+        if (surfaces[r].loop_energy) quality[r].energy = *surfaces[r].loop_energy;
     }
     return quality;
 }

@@ -59,8 +59,10 @@ bool smooth_borders(const FlowInput& input, FlowResult& flow, const std::vector<
     rules.no_distance = std::max(rounding * input.mesh.frame.diagonal, 0.1 * flow.noise);
     const partition::FaceDistance distance = [&](std::uint32_t f, std::int32_t r) { return distances(f, r); };
     try {
-        return partition::smooth_borders({&input.mesh, input.features, {}}, flow.labels, flow.regions, distance, rules,
-                                         input.control) > 0;
+        const bool changed = partition::smooth_borders({&input.mesh, input.features, {}}, flow.labels, flow.regions,
+                                                       distance, rules, input.control) > 0;
+        if (changed) flow.fits.clear();
+        return changed;
     } catch (const runtime::Stopped&) {
         return false;
     }

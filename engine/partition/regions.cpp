@@ -23,9 +23,14 @@ RegionFaces region_faces(const Labels& labels, std::size_t count) {
 }
 
 std::size_t compact(Labels& labels) {
+    std::vector<std::int32_t> renumbered;
+    return compact(labels, renumbered);
+}
+
+std::size_t compact(Labels& labels, std::vector<std::int32_t>& renumbered) {
     std::int32_t largest = -1;
     for (const std::int32_t label : labels) largest = std::max(largest, label);
-    std::vector<std::int32_t> renumbered(static_cast<std::size_t>(largest + 1), -1);
+    renumbered.assign(static_cast<std::size_t>(largest + 1), -1);
     std::int32_t count = 0;
     for (std::int32_t& label : labels) {
         if (label < 0) continue;
