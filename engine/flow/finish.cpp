@@ -94,6 +94,7 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     }
 
     double squared = 0;
+    result.regions.reserve(flow.regions);
     for (std::size_t r = 0; r < flow.regions; ++r) {
         Region region = describe_region(mesh, r, surfaces[r], quality[r], options.weight);
         region.surface_id = ids[r];

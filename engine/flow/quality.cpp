@@ -118,8 +118,12 @@ RegionQuality estimate_faces(const mesh::WorkMesh& mesh, const Faces& faces, con
                              std::size_t share) {
     const auto count = static_cast<std::size_t>(faces.second - faces.first);
     std::vector<std::uint32_t> chosen;
-    for (std::size_t i = 0; i < count; i += share) chosen.push_back(faces.first[i]);
-    RegionQuality q = measure_faces(mesh, {chosen.data(), chosen.data() + chosen.size()}, final);
+    Faces few{faces.first, faces.first + std::min<std::size_t>(count, 1)};
+    if (count > share) {
+        for (std::size_t i = 0; i < count; i += share) chosen.push_back(faces.first[i]);
+        few = {chosen.data(), chosen.data() + chosen.size()};
+    }
+    RegionQuality q = measure_faces(mesh, few, final);
     double area = 0;
     for (const std::uint32_t* f = faces.first; f != faces.second; ++f) area += mesh.areas[*f];
     const double factor = q.area > 0 ? area / q.area : 0;
@@ -147,7 +151,7 @@ std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const par
     }
     std::vector<RegionQuality> parts(blocks.size());
     const std::size_t share = std::max(least_share, mesh.face_count() / sampled_faces);
-    runtime::parallel_for(blocks.size(), 1, [&](std::size_t i) {
+    runtime::parallel_for(blocks.size(), control.should_stop() ? 256 : 1, [&](std::size_t i) {
         const Block& block = blocks[i];
         const Faces faces(regions.face.data() + block.begin, regions.face.data() + block.end);
         parts[i] = control.should_stop() ? estimate_faces(mesh, faces, surfaces[block.region], share)

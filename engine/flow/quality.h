@@ -20,7 +20,7 @@ struct RegionQuality {
 };
 
 /// Exact distances; O(F) evaluations, parallel over blocks of faces. Once `control` says stop, what is left is
-/// estimated from one face in 64.
+/// estimated from a few.
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,
                                            const std::vector<FinalSurface>& surfaces,
                                            const runtime::RunControl& control);
