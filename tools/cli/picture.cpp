@@ -7,7 +7,7 @@
 namespace quadseg::cli {
 namespace {
 
-constexpr std::size_t legend_width = 330;
+constexpr std::size_t legend_width = 380;
 constexpr Rgb paper{255, 255, 255};
 constexpr Rgb ink{40, 44, 52};
 constexpr Rgb plain_color{200, 205, 214};
@@ -23,7 +23,7 @@ void draw_type_legend(Image& image, std::size_t left, std::span<const SurfaceTyp
         fill_rectangle(image, left + 2, y + 2, 22, 22, type_color(type));
         std::string text = std::to_string(count[t]) + " " + to_string(type);
         std::replace(text.begin(), text.end(), '_', ' ');
-        draw_text(image, left + 38, y + 6, text, ink, text.size() > 24 ? 1 : 2);
+        draw_text(image, left + 38, y + 6, text, ink, text.size() > 28 ? 1 : 2);
         y += 38;
     }
 }
