@@ -24,8 +24,8 @@ struct Decimated {
 struct DecimateOptions {
     std::size_t target_faces = 0;
     double feature_degrees = 30;  ///< edges sharper than this, and borders, are kept in place by constraint quadrics
-    std::function<bool()>
-        should_stop;  ///< polled; true: stops early with what is done (valid mesh). May be called from any thread.
+    /// Polled, from any thread; true: stops early with what is done (valid mesh). What it throws leaves decimate().
+    std::function<bool()> should_stop;
 };
 
 /// Parallel and deterministic: the same result at any thread count. Faces must index positions; non-manifold edges and

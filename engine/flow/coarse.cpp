@@ -133,9 +133,12 @@ std::optional<CoarseResult> segment_simplified(const FlowInput& input, std::size
     simplify::DecimateOptions options;
     options.target_faces = coarse_faces;
     options.feature_degrees = input.options.feature_angle > 0 ? input.options.feature_angle : default_crease;
-    options.should_stop = [&] { return input.control.should_stop(); };
+    // Left by Stopped: what is simplified so far would be thrown away.
+    options.should_stop = [&] {
+        input.control.check();
+        return false;
+    };
     const simplify::Decimated decimated = simplify::decimate(input.mesh.positions, input.mesh.faces, options);
-    input.control.check();
     const auto fine_faces = static_cast<double>(input.mesh.face_count());
     if (decimated.faces.empty() || static_cast<double>(decimated.faces.size()) > useful_share * fine_faces) return {};
 

@@ -16,6 +16,8 @@ namespace {
 constexpr double zero_energy = 1e-13;
 /// A Lloyd run that has not found a better state for so many iterations walks in circles.
 constexpr int patience = 4;
+/// Faces that are gathered between two looks at whether to go on.
+constexpr std::size_t polled_faces = 32768;
 
 }  // namespace
 
@@ -26,8 +28,13 @@ VariationalLoop::VariationalLoop(const FlowInput& input)
       passage_{&input.mesh, input.features, {}},
       policy_(method_policy(input.options, [this] { control_->check(); })),
       flood_(passage_) {
-    components_.assign(mesh_.face_count(), 0);
-    component_count_ = partition::connected_parts(passage_, components_);
+    if (input.features == nullptr && input.control.should_stop()) {
+        components_ = mesh_.components;
+        component_count_ = mesh_.component_count;
+    } else {
+        components_.assign(mesh_.face_count(), 0);
+        component_count_ = partition::connected_parts(passage_, components_);
+    }
     kept_.labels = components_;
     kept_.fits.resize(component_count_);
 }
@@ -70,6 +77,7 @@ void VariationalLoop::start_from_labels(const partition::Labels& labels) {
     state_.stamps.resize(count);
     state_.density.assign(labels.size(), 0);
     list_faces();
+    control_->check();
     for (const auto& faces : faces_) state_.seeds.push_back(faces.front());
     new_proxy_.assign(count, 1);
     new_faces_.assign(count, 1);
@@ -196,7 +204,12 @@ void VariationalLoop::fit_regions() {
         control_->check();
         const std::uint32_t r = changed[i];
         partition::GatheredRegion gathered;
-        partition::gather(mesh_, faces_[r].data(), faces_[r].size(), gathered);
+        gathered.reserve(faces_[r].size());
+        for (std::size_t begin = 0; begin < faces_[r].size(); begin += polled_faces) {
+            control_->check();
+            partition::append(mesh_, faces_[r].data() + begin, std::min(polled_faces, faces_[r].size() - begin),
+                              gathered);
+        }
         control_->check();
         state_.fits[r] = policy_.fit(gathered.soup());
         double area = 0;

@@ -1,5 +1,6 @@
 #include "partition/regions.h"
 
+#include "mesh/connected.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -42,42 +43,39 @@ std::size_t compact(Labels& labels, std::vector<std::int32_t>& renumbered) {
 }
 
 std::size_t split_disconnected(const mesh::WorkMesh& mesh, Labels& labels) {
-    // Parts numbered by first face are compact already: a flood from each face that no part has yet.
-    Labels parts(labels.size(), -1);
-    std::vector<std::uint32_t> stack;
-    std::int32_t count = 0;
-    for (std::size_t start = 0; start < labels.size(); ++start) {
-        if (parts[start] >= 0 || labels[start] < 0) continue;
-        parts[start] = count;
-        stack.assign(1, static_cast<std::uint32_t>(start));
-        while (!stack.empty()) {
-            const std::uint32_t f = stack.back();
-            stack.pop_back();
-            for (const std::int32_t g : mesh.neighbors[f]) {
-                if (g < 0) continue;
-                const auto neighbor = static_cast<std::size_t>(g);
-                if (parts[neighbor] >= 0 || labels[neighbor] != labels[start]) continue;
-                parts[neighbor] = count;
-                stack.push_back(static_cast<std::uint32_t>(g));
-            }
-        }
-        ++count;
-    }
-    labels = std::move(parts);
-    return static_cast<std::size_t>(count);
+    return mesh::connected_faces(
+        mesh, [&](std::size_t f) { return labels[f] >= 0; },
+        [&](std::size_t f, std::size_t, std::size_t g) { return labels[f] == labels[g]; }, [] {}, labels);
 }
+
+namespace {
+
+void copy_faces(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, std::size_t begin,
+                GatheredRegion& out) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t f = faces[i];
+        const auto& v = mesh.faces[f];
+        for (std::size_t k = 0; k < 3; ++k) out.corners[3 * (begin + i) + k] = mesh.positions[v[k]];
+        out.normals[begin + i] = mesh.normals[f];
+        out.areas[begin + i] = mesh.areas[f];
+    }
+}
+
+}  // namespace
 
 void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out) {
     out.corners.resize(3 * count);
     out.normals.resize(count);
     out.areas.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t f = faces[i];
-        const auto& v = mesh.faces[f];
-        for (std::size_t k = 0; k < 3; ++k) out.corners[3 * i + k] = mesh.positions[v[k]];
-        out.normals[i] = mesh.normals[f];
-        out.areas[i] = mesh.areas[f];
-    }
+    copy_faces(mesh, faces, count, 0, out);
+}
+
+void append(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out) {
+    const std::size_t begin = out.areas.size();
+    out.corners.resize(3 * (begin + count));
+    out.normals.resize(begin + count);
+    out.areas.resize(begin + count);
+    copy_faces(mesh, faces, count, begin, out);
 }
 
 std::vector<quadric::RegionFit> fit_regions(const mesh::WorkMesh& mesh, const RegionFaces& regions,

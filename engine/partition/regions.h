@@ -34,8 +34,15 @@ struct GatheredRegion {
     std::vector<Vec3> corners, normals;
     std::vector<double> areas;
     quadric::TriangleSoup soup() const noexcept { return {corners, normals, areas}; }
+    void reserve(std::size_t faces) {
+        corners.reserve(3 * faces);
+        normals.reserve(faces);
+        areas.reserve(faces);
+    }
 };
 void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out);
+/// Adds to what is there.
+void append(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out);
 
 /// Fits all regions in parallel (largest first is not needed: one task a region, deterministic each).
 std::vector<quadric::RegionFit> fit_regions(const mesh::WorkMesh& mesh, const RegionFaces& regions,
