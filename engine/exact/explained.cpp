@@ -1,5 +1,7 @@
 #include "exact/explained.h"
 
+#include "mesh/connected.h"
+
 namespace quadseg::exact {
 
 namespace {
@@ -34,17 +36,19 @@ void flood_components(const Scene& scene, const Wanted& wanted, const Same& same
 }  // namespace
 
 void separate_parts(const Scene& scene, Explained& state) {
-    const std::vector<std::int32_t> old = state.region;
+    std::vector<std::int32_t> part;
+    const std::vector<std::int32_t>& old = state.region;
+    const std::size_t count = mesh::connected_faces(
+        scene.mesh, [&](std::size_t f) { return old[f] >= 0; },
+        [&](std::size_t f, std::size_t, std::size_t g) { return old[f] == old[g]; }, [&] { scene.control.check(); },
+        part);
     std::vector<Surface> surfaces;
-    std::int32_t current = -1;
-    flood_components(
-        scene, [&](std::size_t f) { return old[f] >= 0; },
-        [&](std::uint32_t f, int, std::uint32_t g) { return old[f] == old[g]; },
-        [&](std::size_t seed) {
-            current = static_cast<std::int32_t>(surfaces.size());
-            surfaces.push_back(state.surface[static_cast<std::size_t>(old[seed])]);
-        },
-        [&](std::uint32_t f) { state.region[f] = current; });
+    surfaces.reserve(count);
+    for (std::size_t f = 0; surfaces.size() < count; ++f) {  // parts are numbered by first face
+        if (part[f] == static_cast<std::int32_t>(surfaces.size()))
+            surfaces.push_back(state.surface[static_cast<std::size_t>(old[f])]);
+    }
+    state.region = std::move(part);
     state.surface = std::move(surfaces);
 }
 

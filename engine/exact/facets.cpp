@@ -4,23 +4,62 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <span>
 
 namespace quadseg::exact {
 
 namespace {
 
+constexpr std::size_t block = 16384;  ///< faces of a task
+constexpr std::size_t facet_grain = 256;
+
 /// Faces by falling height, to a factor of 2, then by index: slivers, whose normals say little, come last.
 std::vector<std::uint32_t> order_by_height(const std::vector<float>& heights) {
-    const auto bucket = [](float h) { return h > 0 ? std::clamp(-std::ilogb(h), 0, 62) : 63; };
-    std::vector<std::size_t> start(65, 0);
-    for (const float h : heights) ++start[static_cast<std::size_t>(bucket(h)) + 1];
-    for (std::size_t b = 1; b < start.size(); ++b) start[b] += start[b - 1];
+    constexpr std::size_t buckets = 64;
+    const auto bucket = [](float h) {
+        return static_cast<std::size_t>(h > 0 ? std::clamp(-std::ilogb(h), 0, 62) : 63);
+    };
+    // A counting sort: where the faces of each bucket start, for each block of faces.
+    const std::size_t blocks = (heights.size() + block - 1) / block;
+    std::vector<std::uint32_t> start(buckets * blocks, 0);
+    runtime::parallel_blocks(heights.size(), block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) ++start[bucket(heights[f]) * blocks + begin / block];
+    });
+    runtime::exclusive_scan(start);
     std::vector<std::uint32_t> order(heights.size());
-    for (std::size_t f = 0; f < heights.size(); ++f) {
-        order[start[static_cast<std::size_t>(bucket(heights[f]))]++] = static_cast<std::uint32_t>(f);
-    }
+    runtime::parallel_blocks(heights.size(), block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            order[start[bucket(heights[f]) * blocks + begin / block]++] = static_cast<std::uint32_t>(f);
+        }
+    });
     return order;
+}
+
+/// Flag a vertex: all its faces are of one facet and none of its edges is a border.
+std::vector<std::uint8_t> interior_vertices(const mesh::WorkMesh& mesh, const std::vector<std::int32_t>& facet_of) {
+    // Any of the facets at a vertex may stay: where there are two, one of them differs from it.
+    std::vector<std::int32_t> facet_at(mesh.vertex_count(), -1);
+    runtime::parallel_for(mesh.face_count(), block, [&](std::size_t f) {
+        for (const std::uint32_t v : mesh.faces[f]) {
+            std::atomic_ref<std::int32_t>(facet_at[v]).store(facet_of[f], std::memory_order_relaxed);
+        }
+    });
+    std::vector<std::uint8_t> interior(mesh.vertex_count(), 1);
+    runtime::parallel_for(mesh.face_count(), block, [&](std::size_t f) {
+        const auto exclude = [&](std::uint32_t v) {
+            std::atomic_ref<std::uint8_t>(interior[v]).store(0, std::memory_order_relaxed);
+        };
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = mesh.faces[f][k];
+            if (facet_at[v] != facet_of[f]) exclude(v);
+            if (mesh.neighbors[f][k] != mesh::no_face) continue;
+            exclude(v);
+            exclude(mesh.faces[f][(k + 1) % 3]);
+        }
+    });
+    return interior;
 }
 
 struct Point2 {
@@ -115,18 +154,7 @@ class FacetFinder {
                 const runtime::RunControl& control)
         : mesh_(mesh), tolerances_(t), control_(control), heights_(heights) {
         result_.of_face.assign(mesh.face_count(), -1);
-        incident_.assign(mesh.vertex_count(), 0);
-        seen_.assign(mesh.vertex_count(), 0);
-        for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                ++incident_[mesh.faces[f][k]];
-                if (mesh.neighbors[f][k] == mesh::no_face) {
-                    // A vertex on a border is never interior: its count can't be reached.
-                    incident_[mesh.faces[f][k]] += 1U << 20;
-                    incident_[mesh.faces[f][(k + 1) % 3]] += 1U << 20;
-                }
-            }
-        }
+        members_.reserve(mesh.face_count());
     }
 
     Facets find() {
@@ -134,6 +162,12 @@ class FacetFinder {
             control_.check_often(polls_);
             if (result_.of_face[seed] < 0) grow(seed);
         }
+        begin_.push_back(static_cast<std::uint32_t>(members_.size()));
+        interior_ = interior_vertices(mesh_, result_.of_face);
+        runtime::parallel_blocks(result_.facet.size(), facet_grain, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t id = begin; id < end; ++id) judge(id);
+        });
         index_faces();
         return std::move(result_);
     }
@@ -143,15 +177,17 @@ class FacetFinder {
         const auto id = static_cast<std::int32_t>(result_.facet.size());
         Facet facet{mesh_.normals[seed], dot(mesh_.normals[seed], mesh_.corner(seed, 0)), 0, false};
         PlaneSums sums(mesh_.corner(seed, 0));
-        members_.assign(1, seed);
+        const std::size_t first = members_.size();
+        begin_.push_back(static_cast<std::uint32_t>(first));
+        members_.push_back(seed);
         result_.of_face[seed] = id;
         std::size_t next_fit = 4;
         if (squared_norm(facet.normal) > 0) {
-            for (std::size_t i = 0; i < members_.size(); ++i) {
+            for (std::size_t i = first; i < members_.size(); ++i) {
                 control_.check_often(polls_);
                 const std::uint32_t f = members_[i];
                 for (int k = 0; k < 3; ++k) sums.add(mesh_.corner(f, k));
-                if (i + 1 == next_fit) {
+                if (i + 1 - first == next_fit) {
                     sums.fit(facet.normal, facet.offset);
                     next_fit *= 2;
                 }
@@ -162,14 +198,17 @@ class FacetFinder {
                     members_.push_back(static_cast<std::uint32_t>(g));
                 }
             }
-            if (members_.size() > 2) sums.fit(facet.normal, facet.offset);
-        }
-        for (const std::uint32_t f : members_) facet.area += mesh_.areas[f];
-        facet.sure = (has_interior_vertex() || !is_strip(facet)) && !creeps_away(id, facet);
-        for (const std::uint32_t f : members_) {
-            for (const std::uint32_t v : mesh_.faces[f]) seen_[v] = 0;
+            if (members_.size() - first > 2) sums.fit(facet.normal, facet.offset);
         }
         result_.facet.push_back(facet);
+    }
+
+    void judge(std::size_t id) {
+        Facet& facet = result_.facet[id];
+        const std::span<const std::uint32_t> members(&members_[begin_[id]], begin_[id + 1] - begin_[id]);
+        for (const std::uint32_t f : members) facet.area += mesh_.areas[f];
+        facet.sure = (has_interior_vertex(members) || !is_strip(members, facet)) &&
+                     !creeps_away(static_cast<std::int32_t>(id), members, facet);
     }
 
     bool coplanar(std::uint32_t f, const Facet& facet) const {
@@ -181,36 +220,34 @@ class FacetFinder {
         return static_cast<double>(heights_[f]) < 4 * tolerances_.facet || dot(facet.normal, mesh_.normals[f]) > 0;
     }
 
-    bool has_interior_vertex() {
-        bool interior = false;
-        for (const std::uint32_t f : members_) {
-            for (const std::uint32_t v : mesh_.faces[f]) {
-                if (++seen_[v] == incident_[v]) interior = true;
-            }
-        }
-        return interior;
+    bool has_interior_vertex(std::span<const std::uint32_t> members) const {
+        return std::any_of(members.begin(), members.end(), [&](std::uint32_t f) {
+            const auto& v = mesh_.faces[f];
+            return interior_[v[0]] != 0 || interior_[v[1]] != 0 || interior_[v[2]] != 0;
+        });
     }
 
     /// A facet of a ruled or swept tessellation has its vertices on two lines: two rulings, or two sides of a planar
     /// quad.
-    bool is_strip(const Facet& facet) {
-        if (members_.size() < 3) return true;
+    bool is_strip(std::span<const std::uint32_t> members, const Facet& facet) const {
+        if (members.size() < 3) return true;
         const Vec3 u = any_perpendicular(facet.normal), v = cross(facet.normal, u);
-        const Vec3 origin = mesh_.corner(members_.front(), 0);
-        outline_.clear();
-        for (const std::uint32_t f : members_) {
+        const Vec3 origin = mesh_.corner(members.front(), 0);
+        std::vector<Point2> outline;
+        outline.reserve(3 * members.size());
+        for (const std::uint32_t f : members) {
             for (int k = 0; k < 3; ++k) {
                 const Vec3 p = mesh_.corner(f, k) - origin;
-                outline_.push_back({dot(p, u), dot(p, v)});
+                outline.push_back({dot(p, u), dot(p, v)});
             }
         }
-        return on_two_sides(outline_);
+        return on_two_sides(outline);
     }
 
     /// A patch of a curved surface that is flat within the tolerance goes on smoothly beyond its border.
-    bool creeps_away(std::int32_t id, const Facet& facet) const {
+    bool creeps_away(std::int32_t id, std::span<const std::uint32_t> members, const Facet& facet) const {
         double border = 0, creeping = 0;
-        for (const std::uint32_t f : members_) {
+        for (const std::uint32_t f : members) {
             for (int k = 0; k < 3; ++k) {
                 const std::int32_t g = mesh_.neighbors[f][static_cast<std::size_t>(k)];
                 if (g >= 0 && result_.of_face[static_cast<std::size_t>(g)] == id) continue;
@@ -232,11 +269,9 @@ class FacetFinder {
     }
 
     void index_faces() {
-        result_.begin.assign(result_.count() + 1, 0);
-        for (const std::int32_t id : result_.of_face) ++result_.begin[static_cast<std::size_t>(id) + 1];
-        for (std::size_t i = 1; i < result_.begin.size(); ++i) result_.begin[i] += result_.begin[i - 1];
+        result_.begin = begin_;
         result_.face.resize(result_.of_face.size());
-        std::vector<std::uint32_t> next(result_.begin.begin(), result_.begin.end() - 1);
+        std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
         for (std::size_t f = 0; f < result_.of_face.size(); ++f) {
             result_.face[next[static_cast<std::size_t>(result_.of_face[f])]++] = static_cast<std::uint32_t>(f);
         }
@@ -247,8 +282,9 @@ class FacetFinder {
     const runtime::RunControl& control_;
     const std::vector<float>& heights_;
     Facets result_;
-    std::vector<std::uint32_t> incident_, seen_, members_;
-    std::vector<Point2> outline_;
+    std::vector<std::uint32_t> members_;  ///< faces as they joined their facets
+    std::vector<std::uint32_t> begin_;    ///< of each facet in members_
+    std::vector<std::uint8_t> interior_;
     std::size_t polls_ = 0;
 };
 

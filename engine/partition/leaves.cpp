@@ -1,5 +1,6 @@
 #include "partition/leaves.h"
 
+#include "mesh/connected.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -157,29 +158,12 @@ Leaves grow_leaves(const Passage& passage, const LeafOptions& options, const run
 }
 
 std::size_t connected_parts(const Passage& passage, Labels& labels) {
-    Labels parts(labels.size(), unlabelled);
-    std::vector<std::uint32_t> stack;
-    std::int32_t count = 0;
-    for (std::size_t start = 0; start < labels.size(); ++start) {
-        if (parts[start] >= 0 || labels[start] < 0) continue;
-        parts[start] = count;
-        stack.assign(1, static_cast<std::uint32_t>(start));
-        while (!stack.empty()) {
-            const std::size_t f = stack.back();
-            stack.pop_back();
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t g = passage.across(f, k);
-                if (g < 0) continue;
-                const auto u = static_cast<std::size_t>(g);
-                if (parts[u] >= 0 || labels[u] != labels[start]) continue;
-                parts[u] = count;
-                stack.push_back(static_cast<std::uint32_t>(u));
-            }
-        }
-        ++count;
-    }
-    labels = std::move(parts);
-    return static_cast<std::size_t>(count);
+    return mesh::connected_faces(
+        *passage.mesh, [&](std::size_t f) { return labels[f] >= 0; },
+        [&](std::size_t f, std::size_t k, std::size_t g) {
+            return labels[f] == labels[g] && passage.across(f, k) >= 0 && passage.is_active(f);
+        },
+        [] {}, labels);
 }
 
 }  // namespace quadseg::partition
