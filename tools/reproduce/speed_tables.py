@@ -58,6 +58,14 @@ def mesh_text(source):
     return text + (f", **stand-in** for {source['stands_for']}" if "stands_for" in source else "")
 
 
+def shares(seconds):
+    """Where a run's wall time went."""
+    total = max(seconds["total"], 1e-9)
+    named = {"simplified mesh": seconds["coarse"], "loop on the input": seconds["fine"],
+             "final fits and types": seconds["post"], "reading, preparing, writing": seconds["read"] + seconds["prepare"] + seconds["write"]}
+    return ", ".join(f"{100 * value / total:.0f} % {name}" for name, value in named.items() if value > 0)
+
+
 def comparison(kit, file, manifest, name, section, reasons):
     """The paper's seconds and ours, the speed-up of both, and why where ours is smaller."""
     result = json.loads((kit.out / file).read_text())
@@ -81,15 +89,16 @@ def comparison(kit, file, manifest, name, section, reasons):
         paper_ratio, ratio = Ratio(paper_a, paper_b), Ratio(cpu_a, cpu_b)
         holds = ratio.value >= paper_ratio.value
         if not holds:
-            missed.append((row, mesh_text(source), ratio, paper_ratio))
+            missed.append((row, mesh_text(source), ratio, paper_ratio, shares(result["tables"][t]["jobs"][b]["seconds"])))
         table.add(row["model"], mesh_text(source), number(f"{job}{a}/faces", "%d"), number(f"tables/{t}/paper/{r}/regions", "%d"),
                   number(f"{job}{a}/regions", "%d"), paper_a, paper_b, paper_ratio, cpu_a, cpu_b, ratio, Ratio(paper_b, cpu_b),
                   number(f"{job}{a}/energy"), number(f"{job}{b}/energy"), "reached" if holds else "**missed**")
-    for row, mesh, ratio, paper_ratio in missed:
+    for row, mesh, ratio, paper_ratio, parts in missed:
         reason = reasons.get(f"{name}: {row['model']}", "No reason is known.")
         if kit.quick:
             reason = "Quick mode: meshes too small for what the paper measures."
-        section.note(f"**{row['model']}** ({mesh}): {ratio.text} times faster, the paper {paper_ratio.text} times. {reason}")
+        section.note(f"""**{row['model']}** ({mesh}): {ratio.text} times faster, the paper {paper_ratio.text} times. {reason}
+                     ({second}: {parts}.)""")
 
 
 def section(kit, reasons, program):
