@@ -3,6 +3,7 @@
 #include "exact/complete.h"
 #include "exact/explained.h"
 #include "exact/face_fit.h"
+#include "exact/found_so_far.h"
 #include "exact/grow.h"
 #include "exact/release.h"
 #include "exact/scene.h"
@@ -32,6 +33,7 @@ std::vector<Candidate> plane_candidates(const Scene& scene) {
     std::vector<Candidate> candidates(sure.size());
     runtime::PerThread<Marks> marks;
     runtime::parallel_for(sure.size(), 1, [&](std::size_t i) {
+        if (scene.control.should_stop()) return;
         const Facet& facet = scene.facets.facet[sure[i]];
         Surface plane;
         plane.type = SurfaceType::plane;
@@ -39,8 +41,13 @@ std::vector<Candidate> plane_candidates(const Scene& scene) {
         plane.point = to_array(facet.normal * facet.offset);
         const std::span<const std::uint32_t> faces(scene.facets.face.data() + scene.facets.begin[sure[i]],
                                                    scene.facets.size(sure[i]));
-        candidates[i] = grow(scene, plane, faces, largest_facet_turn, marks.local());
+        try {
+            candidates[i] = grow(scene, plane, faces, largest_facet_turn, marks.local());
+        } catch (const runtime::Stopped&) {
+            // The planes found so far count; the caller asks the control.
+        }
     });
+    if (scene.control.should_stop()) std::erase_if(candidates, [](const Candidate& c) { return c.faces.empty(); });
     return candidates;
 }
 
@@ -66,21 +73,24 @@ void ask_again(const Scene& scene, double step, std::vector<Candidate>& candidat
     }
     if (!suspicious) return;
     append(candidates, search_surfaces(scene, {.rows_only = true, .most_step = suspicious_turn * step}, covered));
+    scene.control.check();
 }
 
-}  // namespace
-
-ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
-    const Scene scene = build_scene(mesh, control);
-    std::vector<Candidate> candidates = plane_candidates(scene);
+/// Candidates and selection are the caller's: what is left of them when this throws Stopped.
+ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& candidates, Selection& selection) {
+    const mesh::WorkMesh& mesh = scene.mesh;
+    candidates = plane_candidates(scene);
+    scene.control.check();
     std::vector<std::uint8_t> covered(mesh.face_count(), 0);
     append(candidates, search_surfaces(scene, {}, covered));
+    scene.control.check();
     const double learned = learn_step(candidates);
     const double step = learned > 0 ? std::clamp(learned, least_step, most_step) : unknown_step;
     ask_again(scene, step, candidates);
-    Selection selection = select(scene, candidates, step);
+    selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);
     append(candidates, search_surfaces(scene, {.loose = true}, covered));
+    scene.control.check();
     selection = select(scene, candidates, step);
 
     Explained state;
@@ -105,6 +115,20 @@ ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::Run
     }
     result.covered = mesh.total_area > 0 ? covered_area / mesh.total_area : 0;
     return result;
+}
+
+}  // namespace
+
+ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
+    const Scene scene = build_scene(mesh, control);
+    std::vector<Candidate> candidates;
+    Selection selection;
+    try {
+        return search_and_settle(scene, candidates, selection);
+    } catch (const runtime::Stopped&) {
+        if (candidates.empty()) throw;
+        return found_so_far(mesh, candidates, std::move(selection.owner));
+    }
 }
 
 }  // namespace quadseg::exact

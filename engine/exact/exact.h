@@ -17,9 +17,10 @@ struct ExactSurfaces {
     double covered = 0;             ///< share of the area that has a surface
     double noise = 0;               ///< median distance of vertices to their surfaces, unit frame
     double largest_step = 0;        ///< radians; see Selection
+    bool partial = false;           ///< stopped: the surfaces found so far; free-form parts are labelled too
 };
 
-/// Throws Stopped.
+/// Throws Stopped while there is no surface yet.
 ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control);
 
 }  // namespace quadseg::exact

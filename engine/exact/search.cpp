@@ -3,6 +3,7 @@
 #include "exact/hypothesis.h"
 #include "runtime/parallel.h"
 #include "runtime/per_thread.h"
+#include "runtime/run_control.h"
 
 #include <algorithm>
 
@@ -35,7 +36,7 @@ class ChartSearch {
                          [&](std::uint32_t a, std::uint32_t b) { return scene_.depth[a] > scene_.depth[b]; });
     }
 
-    std::vector<Candidate> run() {
+    void run() {
         std::size_t next = 0;
         while (true) {
             scene_.control.check();
@@ -66,8 +67,9 @@ class ChartSearch {
         for (const std::uint32_t f : faces_) {
             if (covered_[f] == quiet) covered_[f] = 0;
         }
-        return std::move(candidates_);
     }
+
+    std::vector<Candidate> take() { return std::move(candidates_); }
 
   private:
     static constexpr std::uint8_t explained = 1, quiet = 2;
@@ -124,7 +126,14 @@ std::vector<Candidate> search_surfaces(const Scene& scene, const SearchOptions& 
     std::vector<std::vector<Candidate>> found(charts.size());
     runtime::PerThread<Marks> marks;
     runtime::parallel_for(charts.size(), 1, [&](std::size_t c) {
-        if (!charts[c].empty()) found[c] = ChartSearch(scene, std::move(charts[c]), options, covered, marks).run();
+        if (charts[c].empty()) return;
+        ChartSearch search(scene, std::move(charts[c]), options, covered, marks);
+        try {
+            search.run();
+        } catch (const runtime::Stopped&) {
+            // The caller asks the control; what was found counts.
+        }
+        found[c] = search.take();
     });
     std::vector<Candidate> all;
     for (auto& list : found) {

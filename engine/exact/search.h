@@ -15,6 +15,7 @@ struct SearchOptions {
 };
 
 /// Candidates of all charts, in an order that depends on the mesh only. `covered` (a flag a face) is read and extended.
+/// Stopped: those found so far; the control knows.
 std::vector<Candidate> search_surfaces(const Scene& scene, const SearchOptions& options,
                                        std::vector<std::uint8_t>& covered);
 

@@ -432,8 +432,17 @@ class Finisher {
         }
     }
 
-    /// For a call that was stopped: a surface from a few faces, so that all of them take milliseconds.
+    /// For a call that was stopped: what the flow found, or a surface from a few faces, so that all take milliseconds.
     FinalSurface roughly(std::size_t r) const {
+        FinalSurface result = rough_fit(r);
+        if (r >= flow_.surfaces.size() || flow_.surfaces[r].type == SurfaceType::freeform) return result;
+        result.surface = flow_.surfaces[r];
+        (void)quadric_of(result.surface, result.centroid, result.quadric);
+        set_coefficients(result);
+        return result;
+    }
+
+    FinalSurface rough_fit(std::size_t r) const {
         FinalSurface result;
         const std::size_t size = regions_.size(r);
         const std::size_t count = std::min(size, std::max<std::size_t>(2, rough_faces / regions_.count()));

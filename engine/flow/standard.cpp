@@ -4,6 +4,7 @@
 #include "flow/fast.h"
 #include "flow/noise.h"
 #include "flow/noisy.h"
+#include "partition/leaves.h"
 
 #include <algorithm>
 
@@ -46,13 +47,20 @@ FlowResult run_standard(const FlowInput& input) {
     result.surfaces = std::move(exact.surfaces);
     result.regions = result.surfaces.size();
     result.noise = exact.noise;
+    result.partial = exact.partial;
+    if (result.partial) result.stop = input.control.cancelled() ? StopReason::cancelled : StopReason::deadline;
     if (std::find(result.labels.begin(), result.labels.end(), -1) == result.labels.end()) return result;
 
     FlowResult rest;
     try {
         rest = group_freeform(input, result.labels);
-    } catch (const runtime::Stopped&) {
-        return run_fast(input, fast_options(input.options));
+    } catch (const runtime::Stopped& stopped) {
+        rest.labels.resize(result.labels.size());
+        std::transform(result.labels.begin(), result.labels.end(), rest.labels.begin(),
+                       [](std::int32_t label) { return label < 0 ? 0 : -1; });
+        rest.regions = partition::connected_parts({&input.mesh, input.features, {}}, rest.labels);
+        rest.partial = true;
+        rest.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
     }
     const auto first = static_cast<std::int32_t>(result.regions);
     for (std::size_t f = 0; f < result.labels.size(); ++f) {

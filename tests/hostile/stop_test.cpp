@@ -220,6 +220,27 @@ TEST(StopsAtOnce, TheSegmenterToo) {
     EXPECT_EQ(broken_rule(part.mesh.view(), s.result()), "");
 }
 
+/// A stop in the exact stage once returned one region a component, whatever had been found.
+TEST(StopsAtOnce, WithTheSurfacesFoundSoFar) {
+    const datasets::Generated part = datasets::generate("plate", 40000);
+    const auto start = Clock::now();
+    const Segmentation whole = segment(part.mesh.view());
+    const double seconds = seconds_between(start, Clock::now());
+    std::size_t most = 0;
+    for (int k = 1; k < 20; ++k) {
+        Context context;
+        context.set_time_limit(seconds * k / 20);
+        const Segmentation s = segment(part.mesh.view(), {}, &context);
+        EXPECT_EQ(broken_rule(part.mesh.view(), s), "");
+        if (!s.partial) continue;
+        const auto typed = std::count_if(s.regions.begin(), s.regions.end(), [](const Region& r) {
+            return r.surface.type != SurfaceType::freeform && r.rms < 1e-5;
+        });
+        most = std::max(most, static_cast<std::size_t>(typed));
+    }
+    EXPECT_GE(2 * most, whole.regions.size()) << "of " << whole.regions.size();
+}
+
 /// Segmenter::run() called a deadline a cancellation, for its flows asked only whether they were to stop.
 TEST(StopsAtOnce, TheSegmenterSaysWhy) {
     const datasets::Generated clean = datasets::generate("flange", 30000);
