@@ -38,9 +38,9 @@ std::vector<std::int32_t> read_labels(const std::string& path, const Mesh& mesh)
     std::vector<std::int32_t> of_file;
     for (std::int32_t label = 0; in >> label;) of_file.push_back(label);
     if (!in.eof() || of_file.size() != mesh.file_faces) {
-        throw Error(ErrorCode::file_format, path + ": needs " + std::to_string(mesh.file_faces) +
-                                                " whole numbers, one a face of the mesh, but has " +
-                                                std::to_string(of_file.size()));
+        throw Error(ErrorCode::file_format, path + ": has " + std::to_string(of_file.size()) +
+                                                " whole numbers, but the mesh has " + std::to_string(mesh.file_faces) +
+                                                " faces");
     }
     if (mesh.polygons.empty()) return of_file;
     std::vector<std::int32_t> labels;
@@ -58,7 +58,9 @@ std::vector<SurfaceType> read_types(const std::string& path, const std::vector<s
             const std::string name = region.at("type");
             std::size_t t = 0;
             while (t < surface_type_count && name != to_string(static_cast<SurfaceType>(t))) ++t;
-            if (t == surface_type_count) throw Error(ErrorCode::file_format, path + ": no surface type: " + name);
+            if (t == surface_type_count) {
+                throw Error(ErrorCode::file_format, std::string(path).append(": no surface type: ").append(name));
+            }
             types.push_back(static_cast<SurfaceType>(t));
         }
     } catch (const nlohmann::json::exception& error) {

@@ -188,12 +188,13 @@ class Canvas {
 
     /// A line on the surface hides what lies behind it; what lies well in front hides the line.
     void draw_line(const Vec3& from, const Vec3& to, double width, Rgb color) {
-        const double steps = std::ceil(2 * std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), 1.0}));
-        if (!(steps < 1e6)) return;
+        const double length = std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), 1.0});
+        if (!(length < 1e6)) return;
+        const auto steps = static_cast<int>(std::ceil(2 * length));
         const double nearer = 0.004 * static_cast<double>(width_);
         const double half = width / 2;
-        for (double i = 0; i <= steps; ++i) {
-            const Vec3 p = from + (to - from) * (i / steps);
+        for (int i = 0; i <= steps; ++i) {
+            const Vec3 p = from + (to - from) * (static_cast<double>(i) / steps);
             const auto first_x = static_cast<std::int64_t>(std::floor(p.x - half + 0.5));
             const auto first_y = static_cast<std::int64_t>(std::floor(p.y - half + 0.5));
             for (std::int64_t y = first_y; static_cast<double>(y) < p.y + half; ++y) {
@@ -295,7 +296,7 @@ void draw_scene(Image& image, std::size_t width, std::size_t height, const Scene
                 }
             }
             for (std::size_t c = 0; c < 3; ++c) {
-                image.at(x, y)[c] = static_cast<std::uint8_t>(sum[c] / (oversampling * oversampling) + 0.5F);
+                image.at(x, y)[c] = static_cast<std::uint8_t>(std::lround(sum[c] / (oversampling * oversampling)));
             }
         }
     }

@@ -64,6 +64,8 @@ def main():
     a = arguments()
     if a.program is None:
         sys.exit("tools/reproduce/run builds the programs; here --program is needed")
+    if a.copy and a.quick:
+        sys.exit("--copy keeps whole reports only, not those of --quick")
     start = time.monotonic()
     shared = shared_folder(a.shared, a.quick)
     kit = Workshop(a.out, a.program, shared, a.quick)
