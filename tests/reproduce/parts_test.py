@@ -51,6 +51,36 @@ class Pictures(unittest.TestCase):
         image[40:50, 30:60] = 0
         self.assertEqual(copies.trimmed(image, 8).shape, (26, 46, 3))
 
+    def test_montages_are_small_or_refused(self):
+        smooth = np.zeros((300, 400, 3), np.uint8)
+        smooth[..., 0] = np.arange(400) // 2
+        result = self.path.with_name("montage.png")
+        png.write(self.path, smooth)
+        copies.montage([self.path, self.path], result)
+        self.assertLess(result.stat().st_size, copies.LARGEST)
+        self.assertEqual(png.read(result).shape, (162, 424, 3))  # halves with a frame of six pixels
+        png.write(self.path, np.random.default_rng(1).integers(0, 240, (900, 900, 3), dtype=np.uint8))
+        with self.assertRaises(ValueError):
+            copies.montage([self.path], result)
+
+
+class Reports(unittest.TestCase):
+    def test_pictures_and_skipped_parts(self):
+        section = document.Section("one", "Section one")
+        section.figure().add("pictures/a.png", "a picture")
+        section.skipped("crank.off", "not there")
+        section.table(["x", "y"]).add("1", "2")
+        report = document.Document("Title", ["Words."])
+        report.sections.append(section)
+        self.assertIn("pictures/a.png", report.markdown())
+        self.assertNotIn("pictures/a.png", report.markdown(pictures=False))
+        for text in (report.markdown(pictures=False), report.html()):
+            self.assertIn("crank.off: not there", text)
+        self.assertIn("| 1 | 2 |", report.markdown())
+        data = report.data()["sections"][0]
+        self.assertEqual(data["pictures"], [{"file": "pictures/a.png", "text": "a picture"}])
+        self.assertEqual(data["skipped"], ["crank.off: not there"])
+
 
 class Meshes(unittest.TestCase):
     def test_off_keeps_every_bit(self):

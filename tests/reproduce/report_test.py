@@ -1,6 +1,7 @@
 """Whole reports in quick mode: every section, real pictures, numbers that stand in the runs' result files, and what happens
 where meshes or programs are missing."""
 import html
+import html.parser
 import json
 import os
 import pathlib
@@ -79,6 +80,30 @@ def png_rows(path):
     return width, height, zlib.decompress(packed)
 
 
+class Page(html.parser.HTMLParser):
+    """Open tags, links to pictures and to sections of a page."""
+
+    EMPTY = {"meta", "img"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.pictures, self.anchors, self.links = [], set(), set(), set()
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        values = dict(attrs)
+        self.pictures |= {values["src"]} if tag == "img" else set()
+        self.anchors |= {values["id"]} if "id" in values else set()
+        self.links |= {values["href"][1:]} if values.get("href", "").startswith("#") else set()
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            raise ValueError(f"</{tag}> closes what is not open")
+
+
 class Report(unittest.TestCase):
     """A folder of shared meshes in which one of them is found: a generated part under the name of fandisk.obj."""
 
@@ -109,6 +134,13 @@ class Report(unittest.TestCase):
             self.assertTrue(f'<h2 id="{section["id"]}">' in page, section["id"])
             if section["id"] != "tables":
                 self.assertTrue(section["tables"] and section["pictures"], section["id"])
+
+    def test_the_page_is_well_formed(self):
+        page = Page((self.out / "report.html").read_text())
+        self.assertEqual(page.open, [])
+        self.assertEqual(page.links, set(SECTIONS))
+        self.assertLessEqual(page.links, page.anchors)
+        self.assertEqual(page.pictures, {p["file"] for s in self.report["sections"] for p in s["pictures"]})
 
     def test_every_table_stands_in_both_reports(self):
         markdown, page = (self.out / "report.md").read_text(), (self.out / "report.html").read_text()
