@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,19 +42,38 @@ struct Segmenter::Impl {
         : options(chosen), context(given != nullptr ? *given : Context()) {
         const runtime::RunControl control(&context);
         in_arena([&] {
-            mesh = mesh::build_work_mesh(view, control);
-            flow::require_representable(mesh.report);
-            unused = flow::UnusedVertices(mesh, view.positions);
-            if (options.feature_angle > 0) features = mesh::find_feature_edges(mesh, options.feature_angle, control);
-            loop.emplace(flow_input(control));
-            loop->start_from_components();
+            auto prepared = std::make_shared<Prepared>();
+            prepared->mesh = mesh::build_work_mesh(view, control);
+            flow::require_representable(prepared->mesh.report);
+            prepared->unused = flow::UnusedVertices(prepared->mesh, view.positions);
+            shared = std::move(prepared);
+            start(control, nullptr);
         });
+    }
+
+    /// The mesh and the partition of another one, under other options.
+    Impl(const Impl& other, const Options& chosen) : options(chosen), context(other.context), shared(other.shared) {
+        const runtime::RunControl control(&context);
+        in_arena([&] { start(control, &other.loop->state().labels); });
+    }
+
+    /// `labels` null: one region a component.
+    void start(const runtime::RunControl& control, const partition::Labels* labels) {
+        if (options.feature_angle > 0) features = mesh::find_feature_edges(mesh(), options.feature_angle, control);
+        loop.emplace(flow_input(control));
+        if (labels != nullptr) {
+            adopt(*labels);
+        } else {
+            loop->start_from_components();
+        }
         loop->set_control(never);
         update_labels();
     }
 
+    const mesh::WorkMesh& mesh() const noexcept { return shared->mesh; }
+
     flow::FlowInput flow_input(const runtime::RunControl& control) const {
-        return {mesh, features ? &*features : nullptr, options, control};
+        return {mesh(), features ? &*features : nullptr, options, control};
     }
 
     template <class Body>
@@ -85,7 +105,7 @@ struct Segmenter::Impl {
     }
 
     void update_labels() {
-        input_labels = mesh::labels_to_input(mesh, loop->state().labels);
+        input_labels = mesh::labels_to_input(mesh(), loop->state().labels);
         classified.reset();
     }
 
@@ -113,14 +133,14 @@ struct Segmenter::Impl {
     }
 
     std::uint32_t work_face(std::size_t face) const {
-        if (face >= mesh.label_source.size()) {
+        if (face >= mesh().label_source.size()) {
             reject("face " + std::to_string(face) + " does not exist: the mesh has " +
-                   std::to_string(mesh.label_source.size()) + " faces");
+                   std::to_string(mesh().label_source.size()) + " faces");
         }
-        if (mesh.label_source[face] == mesh::no_face) {
+        if (mesh().label_source[face] == mesh::no_face) {
             reject("face " + std::to_string(face) + " is degenerate and belongs to no region");
         }
-        return static_cast<std::uint32_t>(mesh.label_source[face]);
+        return static_cast<std::uint32_t>(mesh().label_source[face]);
     }
 
     void insert_at(std::uint32_t face) {
@@ -148,13 +168,16 @@ struct Segmenter::Impl {
 
     Options options;
     Context context;
-    mesh::WorkMesh mesh;
+    struct Prepared {
+        mesh::WorkMesh mesh;
+        flow::UnusedVertices unused;
+    };
+    std::shared_ptr<const Prepared> shared;  ///< does not depend on the options
     std::optional<mesh::FeatureEdges> features;
     runtime::RunControl never{nullptr};
     std::optional<flow::VariationalLoop> loop;
     std::vector<flow::LoopState> history;
     std::vector<std::int32_t> input_labels;
-    flow::UnusedVertices unused;
     std::optional<std::vector<flow::FinalSurface>> classified;  ///< of the current labels
     std::optional<flow::FlowResult> last_run;                   ///< holds for as long as the labels are its own
 };
@@ -180,21 +203,30 @@ Energy Segmenter::energy() const {
 }
 
 const MeshReport& Segmenter::input() const noexcept {
-    return impl_->mesh.report;
+    return impl_->mesh().report;
 }
 
 void Segmenter::set_labels(std::span<const std::int32_t> labels) {
-    if (labels.size() != impl_->mesh.label_source.size()) {
+    if (labels.size() != impl_->mesh().label_source.size()) {
         reject("labels: " + std::to_string(labels.size()) + " given for " +
-               std::to_string(impl_->mesh.label_source.size()) + " faces");
+               std::to_string(impl_->mesh().label_source.size()) + " faces");
     }
-    partition::Labels work = mesh::labels_from_input(impl_->mesh, labels);
+    partition::Labels work = mesh::labels_from_input(impl_->mesh(), labels);
     std::map<std::int32_t, std::int32_t> numbers;  // the caller's integers in ascending order become 0, 1, …
     for (const std::int32_t label : work) numbers.emplace(label, 0);
     std::int32_t next = 0;
     for (auto& [label, number] : numbers) number = next++;
     for (std::int32_t& label : work) label = numbers[label];
     impl_->change([&](const runtime::RunControl&) { impl_->adopt(std::move(work)); });
+}
+
+void Segmenter::set_context(Context* context) {
+    impl_->context = context != nullptr ? *context : Context();
+}
+
+void Segmenter::set_options(const Options& options) {
+    check_options(options);
+    impl_ = std::make_unique<Impl>(*impl_, options);
 }
 
 StopReason Segmenter::run() {
@@ -270,7 +302,7 @@ std::vector<double> Segmenter::project() const {
         const auto surfaces = impl_->classified ? *impl_->classified : impl_->surfaces(flow, control);
         projected = flow::projected_positions(impl_->flow_input(control), flow.labels, surfaces);
     });
-    impl_->unused.restore(projected);
+    impl_->shared->unused.restore(projected);
     return projected;
 }
 
@@ -289,7 +321,7 @@ Segmentation Segmenter::result() const {
         result = flow::finish(impl_->flow_input(impl_->never), std::move(flow));
         result.threads = runtime::arena_threads();
     });
-    impl_->unused.restore(result.projected);
+    impl_->shared->unused.restore(result.projected);
     return result;
 }
 

@@ -205,5 +205,43 @@ TEST(Segmenter, MayBeMoved) {
     EXPECT_EQ(b.region_count(), 1U);
 }
 
+TEST(Segmenter, RunsAgainUnderOtherOptionsAsIfPreparedForThem) {
+    const Shape shape = joined(box(4), box(5, 5));
+    for (const double angle : {0.0, 30.0}) {
+        Options first = paper_options(), second;
+        second.feature_angle = angle;
+        Segmenter reused(shape.view(), first);
+        reused.run();
+        reused.set_options(second);
+        EXPECT_FALSE(reused.undo());
+        reused.run();
+        Segmenter fresh(shape.view(), second);
+        fresh.run();
+        EXPECT_EQ(copy_of(reused.labels()), copy_of(fresh.labels()));
+        EXPECT_EQ(reused.result().regions.size(), fresh.result().regions.size());
+    }
+    Options wrong;
+    wrong.detail = -1;
+    Segmenter s(shape.view(), paper_options());
+    s.run();
+    const auto before = copy_of(s.labels());
+    EXPECT_EQ(code_of([&] { s.set_options(wrong); }), ErrorCode::invalid_argument);
+    EXPECT_EQ(copy_of(s.labels()), before);
+}
+
+TEST(Segmenter, AnotherContextAfterACancelledOne) {
+    const Shape shape = box(4);
+    Context context;
+    Segmenter s(shape.view(), paper_options(), &context);
+    const auto before = copy_of(s.labels());
+    context.cancel();
+    EXPECT_EQ(code_of([&] { s.relax(); }), ErrorCode::cancelled);
+    EXPECT_EQ(code_of([&] { s.set_options({}); }), ErrorCode::cancelled);
+    EXPECT_EQ(copy_of(s.labels()), before);
+    s.set_context(nullptr);
+    s.run();
+    EXPECT_EQ(s.region_count(), 6U);
+}
+
 }  // namespace
 }  // namespace quadseg::test

@@ -26,6 +26,12 @@ class QUADSEG_API Segmenter {
     Energy energy() const;
     const MeshReport& input() const noexcept;
 
+    /// Watches, bounds and stops what follows; null: nothing does. A cancelled context stays cancelled, a segmenter
+    /// goes on with another one.
+    void set_context(Context* context);
+    /// Other options for what follows. The partition stays, is split where new feature edges cut it, and fitted anew;
+    /// the mesh is not prepared again. Forgets what could be undone.
+    void set_options(const Options& options);
     /// Replaces the partition by the caller's: one label a face, any integers; disconnected regions are split.
     /// Undoable.
     void set_labels(std::span<const std::int32_t> labels);
