@@ -5,6 +5,7 @@
 #include <quadseg/mesh.h>
 #include <quadseg/quadseg.h>
 #include <quadseg/segmentation.h>
+#include <quadseg/segmenter.h>
 
 struct quadseg_context {
     quadseg::Context context;
@@ -16,6 +17,10 @@ struct quadseg_mesh {
 
 struct quadseg_segmentation {
     quadseg::Segmentation value;
+};
+
+struct quadseg_segmenter {
+    quadseg::Segmenter value;
 };
 
 namespace quadseg::capi {

@@ -303,6 +303,50 @@ QUADSEG_API quadseg_status quadseg_segmentation_regularity(const quadseg_segment
                                                            quadseg_regularity* regularity, int32_t* regions,
                                                            size_t capacity);
 
+// ---- Segmenter: one prepared mesh, many operations (see Segmenter in segmenter.h)
+
+/// A mesh, checked and prepared once, and its current partition. Faces are named by input index, regions by their
+/// label, 0 … regions − 1 after every operation. One thread at a time. An operation that fails or is stopped changes
+/// nothing.
+typedef struct quadseg_segmenter quadseg_segmenter;
+
+/// The arrays may go afterwards. The partition is one region a connected component. `options`, `context` may be null.
+QUADSEG_API quadseg_status quadseg_segmenter_create(const quadseg_mesh_view* mesh, const quadseg_options* options,
+                                                    quadseg_context* context, quadseg_segmenter** segmenter);
+QUADSEG_API void quadseg_segmenter_destroy(quadseg_segmenter* segmenter);
+/// For what follows; null: nothing watches, bounds or stops it. The segmenter keeps what it needs of the context.
+QUADSEG_API quadseg_status quadseg_segmenter_set_context(quadseg_segmenter* segmenter, quadseg_context* context);
+/// For what follows; null: the defaults. The partition stays and is fitted anew; forgets what could be undone.
+QUADSEG_API quadseg_status quadseg_segmenter_set_options(quadseg_segmenter* segmenter, const quadseg_options* options);
+/// The whole automatic segmentation, as quadseg_segment() under the segmenter's options. `stop` (QUADSEG_STOP_…) may be
+/// null. Undoable.
+QUADSEG_API quadseg_status quadseg_segmenter_run(quadseg_segmenter* segmenter, int32_t* stop);
+/// Replaces the partition by any integers, `count` = faces; disconnected regions are split. Undoable.
+QUADSEG_API quadseg_status quadseg_segmenter_set_labels(quadseg_segmenter* segmenter, const int32_t* labels,
+                                                        size_t count);
+enum { QUADSEG_WORST_FACE = -1 };
+/// New region seeded at `face`, or where the partition is worst. `label` of the new region may be null. Undoable.
+QUADSEG_API quadseg_status quadseg_segmenter_insert(quadseg_segmenter* segmenter, int64_t face, int32_t* label);
+/// Merges two regions that touch. Undoable.
+QUADSEG_API quadseg_status quadseg_segmenter_merge(quadseg_segmenter* segmenter, int32_t a, int32_t b);
+/// The energy that the merge would add, and whether the common fit is valid (1 or 0). Changes nothing.
+QUADSEG_API quadseg_status quadseg_segmenter_merge_candidate(const quadseg_segmenter* segmenter, int32_t a, int32_t b,
+                                                             double* increase, int32_t* valid);
+/// Up to `iterations` Lloyd iterations; `energy` after them may be null. Undoable.
+QUADSEG_API quadseg_status quadseg_segmenter_relax(quadseg_segmenter* segmenter, int32_t iterations, double* energy);
+/// Smooths the borders of regions. Undoable.
+QUADSEG_API quadseg_status quadseg_segmenter_smooth(quadseg_segmenter* segmenter);
+/// Takes the last undoable operation back; `undone` (1, or 0 when there is none) may be null.
+QUADSEG_API quadseg_status quadseg_segmenter_undo(quadseg_segmenter* segmenter, int32_t* undone);
+/// Of the current partition; 0 for null.
+QUADSEG_API size_t quadseg_segmenter_regions(const quadseg_segmenter* segmenter);
+/// `capacity` ≥ faces of the input.
+QUADSEG_API quadseg_status quadseg_segmenter_labels(const quadseg_segmenter* segmenter, int32_t* labels,
+                                                    size_t capacity);
+/// The current partition as quadseg_segment() returns one.
+QUADSEG_API quadseg_status quadseg_segmenter_result(const quadseg_segmenter* segmenter,
+                                                    quadseg_segmentation** segmentation);
+
 // ---- Names, for reports; "unknown" for other numbers. Never null.
 
 QUADSEG_API const char* quadseg_phase_name(int32_t phase);
