@@ -94,8 +94,9 @@ def main():
         document.sections.append(section)
         print(f"{identifier}: {time.monotonic() - begin:.1f} s", file=sys.stderr, flush=True)
     seconds = time.monotonic() - start
-    document.introduction.append(f"Made in {seconds:.0f} s with {os.cpu_count()} cores" + (", quick mode: small meshes" if a.quick else "") +
-                                 ("." if shared is not None else "; without the folder of shared meshes: generated stand-ins only."))
+    document.introduction.append(
+        f"Made in {seconds:.0f} s with {os.cpu_count()} cores" + (", quick mode: small meshes" if a.quick else "") +
+        ("." if shared is not None else "; without the folder of shared meshes: generated stand-ins only."))
     document.write(kit.out)
     if a.copy:
         from copies import write_copies  # pylint: disable=import-outside-toplevel

@@ -78,8 +78,8 @@ def claims(kit, section, cases):
 
 
 def weights(kit, section, name, model, regions, rival):
-    section.text(f"""**The weight of the normals** ({model.name}, {regions} regions). At ω = .5 normals are 99 % of the energy (for noisy
-        vertices the weight of greatest likelihood is half of the squared edge length, here about 5e-5): regions go where normals
+    section.text(f"""**The weight of the normals** ({model.name}, {regions} regions). At ω = .5 normals are 99 % of the
+        energy (for noisy vertices the weight of greatest likelihood is half of the squared edge length, here about 5e-5): regions go where normals
         turn. With less weight the same methods spend them where distances are.""")
     table = section.table(["ω", "preset paper: Hausdorff RMS", "better than distance only by", "preset default: Hausdorff RMS",
                            "better than distance only by "])
@@ -193,14 +193,14 @@ def merging(kit, reasons):
     for i, (model, regions) in enumerate(models):
         regions = regions or kit.surfaces_of(model)
         name = f"figure12_{i}"
-        runs = [("merging of primitives [22]", kit.segment(f"{name}_merging", model, *PAPER, "--method", "hierarchical", "--regions", regions)),
-                ("**ours, preset paper**", kit.segment(f"{name}_paper", model, *PAPER, "--regions", regions)),
-                ("**ours, preset default**", kit.segment(f"{name}_default", model, "--regions", regions))]
+        variants = (("merging of primitives [22]", "merging", (*PAPER, "--method", "hierarchical")),
+                    ("**ours, preset paper**", "paper", PAPER), ("**ours, preset default**", "default", ()))
+        runs = [(text, kit.segment(f"{name}_{label}", model, *options, "--regions", regions)) for text, label, options in variants]
         figure = section.figure(290)
         for text, run in runs:
             energy = run.number("energy/total")
-            table.add(model.text, text, run.regions, energy, Ratio(energy, runs[1][1].number("energy/total")), run.number("rms", "%.2e"),
-                      run.cpu)
+            table.add(model.text, text, run.regions, energy, Ratio(energy, runs[1][1].number("energy/total")),
+                      run.number("rms", "%.2e"), run.cpu)
             figure.add(kit.regions_picture(run, model), f"{model.name}: {text.strip('*')}, {run.regions.text} regions")
     section.note(reasons["figure 12"])
     return section

@@ -41,7 +41,7 @@ def write_copies(document, kit):
     wanted = {
         "paper_crank": ["figure1_regions", "figure1_types"],
         # With or without features: errors are drawn of the better one.
-        "paper_errors": ["figure10_fandisk_hybrid_22_*_errors", "figure10_fandisk_quadric_l2_22_*_errors", "figure10_fandisk_default_22_errors"],
+        "paper_errors": [f"figure10_fandisk_{method}_errors" for method in ("hybrid_22_*", "quadric_l2_22_*", "default_22")],
         "paper_smoothing": ["figure9_default_regions", "figure9_default_5_regions"],
     }
     for name, patterns in wanted.items():

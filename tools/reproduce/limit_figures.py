@@ -15,8 +15,8 @@ def smoothing(kit, reasons):
     up = () if model.stands_for else ("--up", "y")
     section.text(f"""Model: {model.text}, {regions} regions. Length: of all borders, in diagonals. Zigzag: mean turning angle at border
         vertices. The paper shows pictures only.""")
-    table = section.table(["preset", "band", "length before", "after", "after / before", "zigzag before, degrees", "after ", "after / before ",
-                           "E without", "E with", "CPU s"])
+    table = section.table(["preset", "band", "length before", "after", "after / before", "zigzag before, degrees", "after ",
+                           "after / before ", "E without", "E with", "CPU s"])
     figure = section.figure(290)
     for preset, options in (("default", ()), ("paper", (*PAPER, "--coarse", 300 if kit.quick else 5000, "--features", "none"))):
         plain = kit.segment(f"figure9_{preset}", model, *options, "--regions", regions)
@@ -46,8 +46,8 @@ def mean_best_iou(shared):
 
 def noise(kit, reasons):
     section = Section("figure14", "Fig. 14: noise")
-    section.text("""The paper: Carter with noise, 100K faces, 39 patches, through simplification. Here: a part with known surfaces; IoU is the mean
-        over the true surfaces of the best overlap (by area) that any region reaches.""")
+    section.text("""The paper: Carter with noise, 100K faces, 39 patches, through simplification. Here: a part with known
+        surfaces; IoU is the mean over the true surfaces of the best overlap (by area) that any region reaches.""")
     table = section.table(["model", "preset", "regions: true", "regions: ours", "IoU", "noise estimated", "RMS", "CPU s"])
     figure = section.figure(290)
     for level in (0, 2e-4, 1e-3):
@@ -62,7 +62,8 @@ def noise(kit, reasons):
             table.add(model.text, preset, number("true regions", "%d"), run.regions, number("iou"), run.number("noise", "%.1e"),
                       run.number("rms", "%.2e"), run.cpu)
             if level:
-                figure.add(kit.regions_picture(run, model), f"noise {level:g}, preset {preset}: {run.regions.text} regions, IoU {number('iou').text}")
+                figure.add(kit.regions_picture(run, model),
+                           f"noise {level:g}, preset {preset}: {run.regions.text} regions, IoU {number('iou').text}")
     try:
         model = kit.from_shared("sharp_sphere_noisy.obj", "Carter")
         run = kit.segment("figure14_sphere", model)
@@ -86,16 +87,19 @@ def octahedron(kit, reasons):
     model = kit.generated("rounded_octahedron", 20000)
     truth = np.array(kit.truth_of(model))
     weights = mesh_files.areas(*mesh_files.read(model.path))
-    runs = [("eight planes", kit.segment("figure15_planes", model, *PAPER, "--method", "vsa_l21", "--regions", 8, "--features", "none")),
-            ("eight quadrics, preset paper", kit.segment("figure15_quadrics", model, *PAPER, "--regions", 8, "--features", "none")),
+    eight = (*PAPER, "--regions", 8, "--features", "none")
+    runs = [("eight planes", kit.segment("figure15_planes", model, *eight, "--method", "vsa_l21")),
+            ("eight quadrics, preset paper", kit.segment("figure15_quadrics", model, *eight)),
             ("default preset, no options", kit.segment("figure15_default", model))]
-    table = section.table(["", "regions", "flat faces with a region of their own (of 8)", "mean best IoU with the 26 true surfaces", "E", "RMS", "CPU s"])
+    table = section.table(["", "regions", "flat faces with a region of their own (of 8)", "mean best IoU with the 26 true surfaces",
+                           "E", "RMS", "CPU s"])
     figure = section.figure(290)
     for text, run in runs:
         shared = overlap(truth, np.loadtxt(run.labels, dtype=np.int64), weights)
         flat = np.argsort(-shared.sum(axis=1), kind="stable")[:8]
         number = kit.write_result(run.folder.name + "_truth", {"own": own_regions(shared, flat), "iou": mean_best_iou(shared)})
-        table.add(text, run.regions, number("own", "%d"), number("iou"), run.number("energy/total"), run.number("rms", "%.2e"), run.cpu)
+        table.add(text, run.regions, number("own", "%d"), number("iou"), run.number("energy/total"), run.number("rms", "%.2e"),
+                  run.cpu)
         figure.add(kit.regions_picture(run, model), f"{text}: {run.regions.text} regions")
     figure.add(kit.types_picture(runs[2][1], model), "default preset: types")
     section.note(reasons["figure 15"])

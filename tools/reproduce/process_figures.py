@@ -44,7 +44,8 @@ def progressive_insertion(kit):
     run = kit.segment("figure3_all", model, *PAPER, "--regions", last)
     figure.add(kit.regions_picture(run, model), f"{run.regions.text} regions, final")
     table.add(run.regions, run.number("energy/total"), run.number("rms", "%.2e"), run.number("energies", "%d"), run.cpu)
-    section.text(f"""Model: {model.text}, with as many regions as it has surfaces ({last}; the paper's: {kit.paper('figure 3/regions').text}).""")
+    section.text(f"""Model: {model.text}, with as many regions as it has surfaces ({last}; the paper's:
+        {kit.paper('figure 3/regions').text}).""")
     return section
 
 

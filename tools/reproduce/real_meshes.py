@@ -8,7 +8,7 @@ MESHES = {"fandisk.obj": (), "crank.off": (), "joint.obj": (), "casting.obj": ()
           "rockerarm.off": (), "pulley.obj": (), "iron_scan.ply": (), "bunny.obj": ("--up", "y"), "armadillo.obj": ("--up", "y")}
 
 
-def type_counts(kit, run):
+def type_counts(run):
     counts = collections.Counter(region["type"].replace("_", " ") for region in run.result["regions"])
     return ", ".join(f"{n} {t}" for t, n in sorted(counts.items(), key=lambda item: (-item[1], item[0])))
 
@@ -25,8 +25,9 @@ def section(kit, notes):
             missing.append(file)
             continue
         run = kit.segment("real_" + model.name, model)
-        table.add(model.name, run.faces, run.regions, type_counts(kit, run), run.number("rms", "%.2e"), run.measured("wall"), run.cpu)
-        section.text(f"**{model.name}**: {run.faces.text} faces, {run.regions.text} regions ({type_counts(kit, run)}), {run.measured('wall').text} s")
+        table.add(model.name, run.faces, run.regions, type_counts(run), run.number("rms", "%.2e"), run.measured("wall"), run.cpu)
+        types = type_counts(run)
+        section.text(f"**{model.name}**: {run.faces.text} faces, {run.regions.text} regions ({types}), {run.measured('wall').text} s")
         figure = section.figure(500)
         figure.add(kit.regions_picture(run, model, *view), "regions")
         figure.add(kit.types_picture(run, model, *view), "types")

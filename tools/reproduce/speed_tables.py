@@ -62,7 +62,8 @@ def shares(seconds):
     """Where a run's wall time went."""
     total = max(seconds["total"], 1e-9)
     named = {"simplified mesh": seconds["coarse"], "loop on the input": seconds["fine"],
-             "final fits and types": seconds["post"], "reading, preparing, writing": seconds["read"] + seconds["prepare"] + seconds["write"]}
+             "final fits and types": seconds["post"],
+             "reading, preparing, writing": seconds["read"] + seconds["prepare"] + seconds["write"]}
     return ", ".join(f"{100 * value / total:.0f} % {name}" for name, value in named.items() if value > 0)
 
 

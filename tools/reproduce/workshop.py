@@ -129,7 +129,8 @@ class Workshop:
 
     def picture(self, name, mesh, *arguments):
         path = f"pictures/{name}.png"
-        self.call(["picture", mesh, "-o", self.out / path, "--width", 380 if self.quick else 760, "--height", 285 if self.quick else 570, *arguments])
+        width = 380 if self.quick else 760
+        self.call(["picture", mesh, "-o", self.out / path, "--width", width, "--height", width * 3 // 4, *arguments])
         return path
 
     def regions_picture(self, run, model, *arguments):
