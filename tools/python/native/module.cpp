@@ -7,6 +7,7 @@
 #include "tools/python/native/job.h"
 #include "tools/python/native/options.h"
 #include "tools/python/native/records.h"
+#include "tools/python/native/segmenter.h"
 
 #include <exception>
 #include <new>
@@ -169,6 +170,7 @@ PYBIND11_MODULE(_native, module) {
     // noconvert: an array of another type here is a mistake of ours, not a reason to copy.
     module.def("segment", call_segment, py::arg("vertices").noconvert(), py::arg("faces").noconvert(),
                py::arg("polygons").noconvert(), "options"_a, "progress"_a, "timeout"_a, "threads"_a, "memory_limit"_a);
+    register_segmenter(module, result_dict);
     module.def("inspect", call_inspect, py::arg("vertices").noconvert(), py::arg("faces").noconvert(),
                "feature_degrees"_a, "timeout"_a, "threads"_a);
     module.def("read", call_read, "path"_a, "progress"_a, "timeout"_a, "memory_limit"_a);

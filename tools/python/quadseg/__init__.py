@@ -10,6 +10,7 @@ After ``os.fork()`` in a process that has used quadseg, don't use it in the chil
 
 from ._api import ProgressFunction, inspect, read, segment, write, write_labels
 from ._errors import Cancelled, Error, FileError, InputError, InternalError, OptionError, OutOfMemory
+from ._segmenter import Segmenter
 from ._native import version as __version__
 from ._types import (
     SURFACE_TYPES,
@@ -40,6 +41,7 @@ __all__ = [
     "Region",
     "Regularity",
     "Segmentation",
+    "Segmenter",
     "Timings",
     "__version__",
     "inspect",

@@ -18,6 +18,23 @@ def _check_progress(progress: Optional[ProgressFunction]) -> None:
         raise make("invalid_argument", "progress: must be callable or None")
 
 
+def _options(given: Mapping[str, Any]) -> dict[str, Any]:
+    """As the compiled part takes them."""
+    options = dict(given)
+    if options.get("coarse") == "auto":
+        options["coarse"] = -1
+    options["paper"] = dict(options.get("paper") or {})
+    return options
+
+
+def _segmentation(result: dict[str, Any]) -> Segmentation:
+    result["energy"] = Energy(*result["energy"])
+    result["seconds"] = Timings(*result["seconds"])
+    result["report"] = MeshReport(**result["report"])
+    result["regularities"] = [Regularity(*each) for each in result["regularities"]]
+    return Segmentation(**result)
+
+
 def segment(
     vertices: Any,
     faces: Any,
@@ -100,8 +117,6 @@ def segment(
     vertices = _arrays.vertices_of(vertices)
     faces = _arrays.faces_of(faces)
     _check_progress(progress)
-    if coarse == "auto":
-        coarse = -1
     options = {
         "preset": preset,
         "method": method,
@@ -118,23 +133,19 @@ def segment(
         "regularities": regularities,
         "smoothing_band": smoothing_band,
         "smoothing_lambda": smoothing_lambda,
-        "paper": dict(paper or {}),
+        "paper": paper,
     }
     result = _native.segment(
         vertices,
         faces,
         _arrays.polygons_of(polygons, len(faces)),
-        options,
+        _options(options),
         progress,
         timeout,
         threads,
         memory_limit,
     )
-    result["energy"] = Energy(*result["energy"])
-    result["seconds"] = Timings(*result["seconds"])
-    result["report"] = MeshReport(**result["report"])
-    result["regularities"] = [Regularity(*each) for each in result["regularities"]]
-    return Segmentation(**result)
+    return _segmentation(result)
 
 
 def inspect(
