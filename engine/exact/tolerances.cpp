@@ -1,6 +1,7 @@
 #include "exact/tolerances.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -14,11 +15,27 @@ constexpr int least_digits = 5;
 /// Relative to the largest extent; coarser files are no longer clean meshes.
 constexpr double worst_precision = 2e-6;
 
-/// Smallest number of significant decimal digits that represents x up to the rounding of the unit frame's round trip.
-int significant_digits(double x, double slack) {
-    const int exponent = static_cast<int>(std::floor(std::log10(std::abs(x))));
+/// std::pow(10, exponent), most of which are asked for very often.
+class PowersOfTen {
+  public:
+    PowersOfTen() {
+        for (int e = -largest; e <= largest; ++e) known_[static_cast<std::size_t>(e + largest)] = std::pow(10.0, e);
+    }
+    double operator()(int exponent) const {
+        return std::abs(exponent) <= largest ? known_[static_cast<std::size_t>(exponent + largest)]
+                                             : std::pow(10.0, exponent);
+    }
+
+  private:
+    static constexpr int largest = 24;
+    std::array<double, 2 * largest + 1> known_;
+};
+
+/// Smallest number of significant decimal digits that represents x, of the magnitude 10^exponent, up to the rounding of
+/// the unit frame's round trip.
+int significant_digits(double x, int exponent, double slack, const PowersOfTen& power) {
     for (int n = 1; n < most_digits; ++n) {
-        const double quantum = std::pow(10.0, exponent - n + 1);
+        const double quantum = power(exponent - n + 1);
         if (std::abs(x - std::round(x / quantum) * quantum) <= slack) return n;
     }
     return most_digits;
@@ -41,6 +58,7 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
     const double slack = 4e-16 * magnitude;
     std::vector<double> digits, quanta, float_quanta;
     std::size_t floats = 0, total = 0;
+    const PowersOfTen power;
     for (std::size_t v = 0; v < mesh.vertex_count(); v += stride) {
         const Vec3 p = mesh.frame.to_input(mesh.positions[v]);
         for (int k = 0; k < 3; ++k) {
@@ -49,8 +67,9 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
             ++total;
             if (std::abs(x - static_cast<double>(static_cast<float>(x))) <= slack) ++floats;
             float_quanta.push_back(std::abs(x) * 6e-8);
-            digits.push_back(significant_digits(x, slack));
-            quanta.push_back(std::pow(10.0, std::floor(std::log10(std::abs(x)))));
+            const int exponent = static_cast<int>(std::floor(std::log10(std::abs(x))));
+            digits.push_back(significant_digits(x, exponent, slack, power));
+            quanta.push_back(power(exponent));
         }
     }
     if (total == 0) return 1e-16;

@@ -2,6 +2,7 @@
 
 #include <quadseg/error.h>
 
+#include "flow/fast.h"
 #include "flow/paper.h"
 #include "flow/project_labels.h"
 #include "mesh/features.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -23,13 +25,17 @@ constexpr std::size_t faces_per_coarse_face = 10;
 constexpr double useful_share = 0.7;
 /// A part of a projected region of this share of its main part is no fringe of jagged faces: a region of its own.
 constexpr double independent_share = 0.9;
-/// Of the regions brought to the fine mesh a tenth, one at least, are too many: the last merges see the true energies.
-constexpr std::size_t regions_per_spare = 10;
-/// Teleportations on the fine mesh, each as dear as many on the simplified one.
-constexpr int fine_teleportations = 4;
+/// Of the regions brought to the fine mesh a quarter are too many: the last merges see the true energies. (Where a
+/// single one would be a third of all, none: merging three surfaces' worth of four ended at twice the energy.)
+constexpr std::size_t regions_per_spare = 3;
+/// Teleportations on the simplified mesh, after merging. On the fine mesh, where each is as dear as many of these, only
+/// where surfaces explain the simplified one badly (RMS angle of the normals, degrees): spare regions do as well on
+/// parts, but shapes without surfaces have many local minima.
+constexpr int coarse_teleportations = 4, fine_teleportations = 3;
+constexpr double organic_angle = 6;
 /// Regions on the simplified mesh before merging, for one that is wanted: 1 traps the loop in what insertion found, 2
 /// takes twice as long and ends no lower.
-constexpr double regions_overshoot = 1.5;
+constexpr double regions_overshoot = 1.4;
 constexpr double default_crease = 30;
 
 std::vector<double> flat(const std::vector<Vec3>& points) {
@@ -203,9 +209,11 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
     if (input.options.regions == 0) return run_paper(input);
     Options more = input.options;
     more.regions = static_cast<std::size_t>(regions_overshoot * static_cast<double>(input.options.regions));
+    more.paper.teleportations = 0;
     FlowResult many = run_paper({input.mesh, input.features, more, input.control});
     if (many.partial) return many;
-    more.regions = input.options.regions + std::max<std::size_t>(1, input.options.regions / regions_per_spare);
+    more.regions = input.options.regions + (input.options.regions - 1) / regions_per_spare;
+    more.paper.teleportations = std::min(coarse_teleportations, input.options.paper.teleportations);
     FlowResult result = run_paper({input.mesh, input.features, more, input.control}, &many.labels);
     result.energies.insert(result.energies.begin(), many.energies.begin(), many.energies.end());
     return result;
@@ -215,12 +223,33 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
 
 FlowResult run_paper_coarse(const FlowInput& input, std::size_t coarse_faces) {
     if (input.options.method == Method::hierarchical) return run_paper(input);  // merges from single faces up
-    return run_coarse(input, coarse_faces, overshoot_and_merge,
-                      [](const FlowInput& fine, const partition::Labels& labels) {
-                          Options fewer = fine.options;
-                          fewer.paper.teleportations = std::min(fine_teleportations, fewer.paper.teleportations);
-                          return run_paper({fine.mesh, fine.features, fewer, fine.control}, &labels);
-                      });
+    bool organic = false;
+    const auto on_coarse = [&](const FlowInput& coarse) {
+        FlowResult result = overshoot_and_merge(coarse);
+        const double angle = organic_angle * std::numbers::pi / 180;
+        organic = !result.energies.empty() &&
+                  result.energies.back() > coarse.options.weight * angle * angle * coarse.mesh.total_area;
+        return result;
+    };
+    const auto on_fine = [&](const FlowInput& fine, const partition::Labels& labels) {
+        Options fewer = fine.options;
+        fewer.paper.teleportations = organic ? std::min(fine_teleportations, fewer.paper.teleportations) : 0;
+        return run_paper({fine.mesh, fine.features, fewer, fine.control}, &labels);
+    };
+    return run_coarse(input, coarse_faces, on_coarse, on_fine);
+}
+
+FlowResult run_fast_coarse(const FlowInput& input, std::size_t coarse_faces) {
+    const FastOptions options = fast_options(input.options);
+    const auto on_coarse = [&](const FlowInput& coarse) {
+        FastOptions more = options;
+        if (more.regions > 0) more.regions += (more.regions - 1) / regions_per_spare;
+        return run_fast(coarse, more);
+    };
+    const auto on_fine = [&](const FlowInput& fine, const partition::Labels& labels) {
+        return refine_fast(fine, options, labels);
+    };
+    return run_coarse(input, coarse_faces, on_coarse, on_fine);
 }
 
 }  // namespace quadseg::flow

@@ -22,8 +22,12 @@ std::size_t coarse_face_count(const Options& options, std::size_t faces);
 FlowResult run_coarse(const FlowInput& input, std::size_t coarse_faces, const FlowFunction& flow_on_coarse,
                       const RefineFunction& refine_on_fine);
 
-/// run_coarse for the paper's loop. With a number of regions wanted, the loop finds half as many again on the
-/// simplified mesh, where that is cheap, and merges back to the number there: lower energies than by insertion alone.
+/// run_coarse for the paper's loop. With a number of regions wanted, the loop finds more on the simplified mesh, where
+/// that is cheap, and merges most of what is too many there, the last on the fine mesh: lower energies than by
+/// insertion alone.
 FlowResult run_paper_coarse(const FlowInput& input, std::size_t coarse_faces);
+/// run_coarse for the fast flow: regions by energy, also where none would be looked for on the vertices (which a
+/// simplified mesh has not).
+FlowResult run_fast_coarse(const FlowInput& input, std::size_t coarse_faces);
 
 }  // namespace quadseg::flow

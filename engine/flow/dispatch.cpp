@@ -7,8 +7,8 @@
 namespace quadseg::flow {
 
 FlowResult run_flow(const FlowInput& input) {
-    if (input.options.preset != Preset::paper) return run_standard(input);
     const std::size_t coarse = coarse_face_count(input.options, input.mesh.face_count());
+    if (input.options.preset != Preset::paper) return coarse > 0 ? run_fast_coarse(input, coarse) : run_standard(input);
     return coarse > 0 ? run_paper_coarse(input, coarse) : run_paper(input);
 }
 

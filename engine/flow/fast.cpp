@@ -59,16 +59,30 @@ class FastFlow {
     }
 
     FlowResult run() {
-        try {
-            start_from_parts();
-            if (fast_.regions > 0 && count_ > fast_.regions && passage_.barriers != nullptr) {
-                // The number asked for weighs more than the features.
-                passage_.barriers = nullptr;
-                start_from_parts();
-            }
+        return ended([&] {
+            start();
             grow();
             merge_down();
             if (!result_.partial) improve();
+        });
+    }
+
+    /// From labels found elsewhere.
+    FlowResult refine(const Labels& initial) {
+        return ended([&] {
+            start();
+            labels_ = initial;
+            count_ = partition::connected_parts(passage_, labels_);
+            merge_down();
+            if (!result_.partial) improve();
+        });
+    }
+
+  private:
+    template <class Steps>
+    FlowResult ended(const Steps& steps) {
+        try {
+            steps();
         } catch (const runtime::Stopped&) {
             result_.partial = true;
         }
@@ -83,7 +97,6 @@ class FastFlow {
         return std::move(result_);
     }
 
-  private:
     /// Numbers the regions by their first face, their fits alike.
     void hand_over() {
         std::vector<std::int32_t> renumbered;
@@ -93,6 +106,15 @@ class FastFlow {
         result_.fits.resize(result_.regions);
         for (std::size_t r = 0; r < renumbered.size(); ++r) {
             if (renumbered[r] >= 0) result_.fits[static_cast<std::size_t>(renumbered[r])] = std::move(fits_[r]);
+        }
+    }
+
+    void start() {
+        start_from_parts();
+        if (fast_.regions > 0 && count_ > fast_.regions && passage_.barriers != nullptr) {
+            // The number asked for weighs more than the features.
+            passage_.barriers = nullptr;
+            start_from_parts();
         }
     }
 
@@ -322,6 +344,12 @@ FastOptions fast_options(const Options& options) {
 
 FlowResult run_fast(const FlowInput& input, const FastOptions& fast) {
     return FastFlow(input, fast).run();
+}
+
+FlowResult refine_fast(const FlowInput& input, const FastOptions& fast, const partition::Labels& initial) {
+    FastOptions options = fast;
+    options.split_rounds = 0;  // there are no leaves to dissolve regions into
+    return FastFlow(input, options).refine(initial);
 }
 
 }  // namespace quadseg::flow

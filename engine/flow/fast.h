@@ -28,5 +28,7 @@ struct FastOptions {
 /// With FastOptions from options.regions, tolerance and detail by fast_options().
 FastOptions fast_options(const Options& options);
 FlowResult run_fast(const FlowInput& input, const FastOptions& fast);
+/// From connected labels 0 … n−1 (of a simplified mesh, brought over): what is too many is merged, then borders relax.
+FlowResult refine_fast(const FlowInput& input, const FastOptions& fast, const partition::Labels& initial);
 
 }  // namespace quadseg::flow

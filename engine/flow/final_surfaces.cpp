@@ -224,7 +224,7 @@ class Finisher {
 
   private:
     /// Neither verified on its vertices nor to be judged by a known noise.
-    bool by_energy(std::size_t r) const { return !paper_ && !(flow_.noise > 0) && r >= flow_.surfaces.size(); }
+    bool by_energy(std::size_t r) const { return !(flow_.noise > 0) && r >= flow_.surfaces.size(); }
 
     const std::uint32_t* faces(std::size_t r) const { return regions_.face.data() + regions_.begin[r]; }
 
@@ -291,9 +291,9 @@ class Finisher {
         }
     }
 
-    /// The fit that the flow ended with; planes are fitted again, to a tighter tolerance.
+    /// The fit that the flow ended with; the default preset's planes are fitted again, to a tighter tolerance.
     bool take_fit(std::size_t r, FinalSurface& result) const {
-        if (paper_ || r >= flow_.fits.size() || flow_.fits[r].proxy.planar() || !flow_.fits[r].valid) return false;
+        if (r >= flow_.fits.size() || !flow_.fits[r].valid || (!paper_ && flow_.fits[r].proxy.planar())) return false;
         result.quadric = flow_.fits[r].proxy;
         result.loop_energy = flow_.fits[r].energy;
         return true;

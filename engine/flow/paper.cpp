@@ -326,7 +326,15 @@ FlowResult run_paper(const FlowInput& input, const partition::Labels* initial) {
         result.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
         result.labels = flow.loop().kept().labels;
     }
-    result.regions = partition::compact(result.labels);
+    std::vector<std::int32_t> renumbered;
+    result.regions = partition::compact(result.labels, renumbered);
+    if (!result.partial && input.options.method == Method::quadric) {
+        const LoopState& state = flow.loop().state();
+        result.fits.resize(result.regions);
+        for (std::size_t r = 0; r < renumbered.size(); ++r) {
+            if (renumbered[r] >= 0) result.fits[static_cast<std::size_t>(renumbered[r])] = state.fits[r];
+        }
+    }
     result.energies = std::move(flow.loop().energies);
     return result;
 }

@@ -1,5 +1,7 @@
 #include "flow/coarse.h"
 
+#include "datasets/generate.h"
+#include "flow/dispatch.h"
 #include "flow/paper.h"
 #include "flow/paper_loop.h"
 #include "flow/project_labels.h"
@@ -134,6 +136,73 @@ TEST(Coarse, SameLabelsAtAnyThreadCount) {
         if (!reference) reference = result.labels;
         EXPECT_EQ(result.labels, *reference) << threads;
     }
+}
+
+/// Every face of the input labelled, as many regions as wanted, each edge-connected.
+void expect_partition(const mesh::WorkMesh& mesh, const FlowResult& result, std::size_t regions) {
+    EXPECT_EQ(result.regions, regions);
+    ASSERT_EQ(result.labels.size(), mesh.face_count());
+    EXPECT_GE(*std::min_element(result.labels.begin(), result.labels.end()), 0);
+    Labels parts = result.labels;
+    EXPECT_EQ(partition::split_disconnected(mesh, parts), regions);
+}
+
+TEST(Coarse, DefaultPresetEndsNearThePlainFlow) {
+    const datasets::Generated plate = datasets::generate("plate", 30000);
+    const runtime::RunControl control(nullptr);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(plate.mesh.view(), control);
+    Options options;
+    options.regions = plate.surfaces.size();
+    const FlowInput plain{mesh, nullptr, options, control};
+    Options coarse_options = options;
+    coarse_options.coarse = 3000;
+    const FlowResult direct = flow::run_flow(plain);
+    const FlowResult coarse = flow::run_flow({mesh, nullptr, coarse_options, control});
+    expect_partition(mesh, coarse, options.regions);
+    EXPECT_GT(coarse.coarse_seconds, 0);
+    const auto energy = [&](const FlowResult& result) {
+        const partition::RegionFaces faces = partition::region_faces(result.labels, result.regions);
+        double sum = 0;
+        for (const auto& fit : partition::fit_regions(mesh, faces, {}, control)) sum += fit.total;
+        return sum;
+    };
+    EXPECT_LE(energy(coarse), 1.1 * energy(direct));
+}
+
+TEST(Coarse, DefaultPresetWithoutANumberToo) {
+    const mesh::WorkMesh mesh = work_mesh(box(24));
+    Options options;
+    options.coarse = 300;
+    const runtime::RunControl control(nullptr);
+    expect_partition(mesh, flow::run_flow({mesh, nullptr, options, control}), 6);
+}
+
+TEST(Coarse, DefaultPresetIsTheSameAtAnyThreadCount) {
+    const mesh::WorkMesh mesh = work_mesh(dome_on_plate(64, 24));
+    Options options;
+    options.regions = 5;
+    const runtime::RunControl control(nullptr);
+    std::optional<Labels> reference;
+    for (const int threads : {1, 2, 8}) {
+        FlowResult result;
+        runtime::in_arena(threads, [&] { result = flow::run_fast_coarse({mesh, nullptr, options, control}, 1000); });
+        if (!reference) reference = result.labels;
+        EXPECT_EQ(result.labels, *reference) << threads;
+        expect_partition(mesh, result, 5);
+    }
+}
+
+TEST(Coarse, DefaultPresetCancelledReturnsALabelForEveryFace) {
+    const mesh::WorkMesh mesh = work_mesh(box(24));
+    Options options;
+    options.regions = 6;
+    Context context;
+    context.cancel();
+    const runtime::RunControl control(&context);
+    const FlowResult result = flow::run_fast_coarse({mesh, nullptr, options, control}, 200);
+    EXPECT_TRUE(result.partial);
+    ASSERT_EQ(result.labels.size(), mesh.face_count());
+    EXPECT_GE(*std::min_element(result.labels.begin(), result.labels.end()), 0);
 }
 
 TEST(Coarse, AutomaticChoice) {

@@ -109,6 +109,27 @@ TEST(FastFlow, TheSameAtAnyThreadCount) {
     }
 }
 
+TEST(FastFlow, HandsOnTheFitsOfItsRegions) {
+    const datasets::Generated plate = datasets::generate("plate", 20000);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(plate.mesh.view(), free_run);
+    const FlowResult result = run(mesh, 50);
+    ASSERT_EQ(result.fits.size(), result.regions);
+    const partition::RegionFaces faces = partition::region_faces(result.labels, result.regions);
+    quadric::RegionFitOptions options;
+    options.plane_tolerance_per_area = true;
+    const auto expected = partition::fit_regions(mesh, faces, options, free_run);
+    double sum = 0;
+    for (std::size_t r = 0; r < result.regions; ++r) {
+        const double scale = std::max(expected[r].total, 1e-9);
+        EXPECT_NEAR(result.fits[r].total, expected[r].total, 1e-6 * scale) << r;
+        if (!expected[r].proxy.planar()) {
+            EXPECT_EQ(result.fits[r].proxy.c, expected[r].proxy.c) << r;
+        }
+        sum += result.fits[r].total;
+    }
+    EXPECT_NEAR(sum, result.energies.back(), 1e-9 * sum);
+}
+
 TEST(FastFlow, RecoversMostTrueSurfacesOfAPlate) {
     const datasets::Generated plate = datasets::generate("plate", 40000);
     const mesh::WorkMesh mesh = mesh::build_work_mesh(plate.mesh.view(), free_run);
