@@ -2,6 +2,7 @@
 
 #include "exact/exact.h"
 #include "flow/fast.h"
+#include "flow/freeform.h"
 #include "flow/noise.h"
 #include "flow/noisy.h"
 #include "partition/leaves.h"
@@ -10,26 +11,7 @@
 
 namespace quadseg::flow {
 
-namespace {
-
-/// Free-form faces are grouped by energy with a wide misfit: few and stable patches (PROTOTYPE_TRUTH.md 1.14: τ = .03).
-constexpr double freeform_misfit_angle = 14;
-constexpr double crease_degrees = 30;
-
-FlowResult group_freeform(const FlowInput& input, const partition::Labels& explained) {
-    std::vector<std::uint8_t> active(explained.size());
-    std::transform(explained.begin(), explained.end(), active.begin(),
-                   [](std::int32_t label) { return static_cast<std::uint8_t>(label < 0 ? 1 : 0); });
-    FastOptions options = fast_options(input.options);
-    options.misfit_angle = freeform_misfit_angle;
-    options.active = active;
-    if (input.features) return run_fast(input, options);
-    // On a clean mesh a crease is a border that the designer meant.
-    const mesh::FeatureEdges creases = mesh::find_feature_edges(input.mesh, crease_degrees, input.control);
-    return run_fast({input.mesh, &creases, input.options, input.control}, options);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 FlowResult run_standard(const FlowInput& input) {
     // A wanted number or tolerance is an energy question; only the choice of their own makes surfaces the question.

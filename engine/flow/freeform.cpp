@@ -1,0 +1,105 @@
+#include "flow/freeform.h"
+
+#include "flow/curvature_patches.h"
+#include "flow/fast.h"
+#include "mesh/connected.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadseg::flow {
+
+namespace {
+
+/// A crease is a border that the designer meant.
+constexpr double crease_degrees = 30;
+/// By energy, patches are grouped with a wide misfit: few and stable ones (PROTOTYPE_TRUTH.md 1.14: τ = .03).
+constexpr double freeform_misfit_angle = 14;
+/// Curvature counts as known where at most this share of the edges shows a jump that could be a border: on CAD meshes
+/// 1 to 19 %, on organic and simplified ones 21 to 40 %.
+constexpr double most_jumps = 0.2;
+/// A small smooth part has too few edges to tell by itself: so many edges of all the others speak along.
+constexpr double prior_edges = 200;
+
+struct Jumps {
+    double edges = 0, large = 0;
+};
+
+/// Faces of smooth parts whose curvature is known.
+std::vector<std::uint8_t> find_regular(const mesh::WorkMesh& mesh, const mesh::FeatureEdges& creases,
+                                       const CurvatureField& field, double large, const runtime::RunControl& control) {
+    std::vector<std::int32_t> part;
+    const std::size_t parts = mesh::connected_faces(
+        mesh, [&](std::size_t f) { return field.slot[f] >= 0; },
+        [&](std::size_t f, std::size_t k, std::size_t) { return (creases[f] >> k & 1) == 0; }, [&] { control.check(); },
+        part);
+    std::vector<Jumps> jumps(parts);
+    Jumps all;
+    std::size_t polls = 0;
+    for (const std::uint32_t f : field.face) {
+        control.check_often(polls);
+        Jumps& here = jumps[static_cast<std::size_t>(part[f])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int32_t g = mesh.neighbors[f][k];
+            if (g <= static_cast<std::int32_t>(f) || part[static_cast<std::size_t>(g)] != part[f]) continue;
+            if ((creases[f] >> k & 1) != 0) continue;
+            const double is_large = curvature_jump(field, mesh, f, k).relative > large ? 1 : 0;
+            here.edges += 1;
+            here.large += is_large;
+            all.edges += 1;
+            all.large += is_large;
+        }
+    }
+    const double overall = all.edges > 0 ? all.large / all.edges : 0;
+    std::vector<std::uint8_t> regular(mesh.face_count(), 0);
+    for (const std::uint32_t f : field.face) {
+        const Jumps& here = jumps[static_cast<std::size_t>(part[f])];
+        const double share = (here.large + prior_edges * overall) / (here.edges + prior_edges);
+        regular[f] = share <= most_jumps ? 1 : 0;
+    }
+    return regular;
+}
+
+std::vector<std::uint8_t> faces_where(const partition::Labels& labels, const auto& wanted) {
+    std::vector<std::uint8_t> faces(labels.size());
+    for (std::size_t f = 0; f < labels.size(); ++f) faces[f] = wanted(f) ? 1 : 0;
+    return faces;
+}
+
+}  // namespace
+
+FlowResult group_freeform(const FlowInput& input, const partition::Labels& explained) {
+    const mesh::WorkMesh& mesh = input.mesh;
+    const mesh::FeatureEdges creases =
+        input.features ? *input.features : mesh::find_feature_edges(mesh, crease_degrees, input.control);
+    PatchRules rules;
+    rules.jump /= std::sqrt(input.options.detail);
+    FlowResult result;
+    {
+        const std::vector<std::uint8_t> free = faces_where(explained, [&](std::size_t f) { return explained[f] < 0; });
+        const CurvatureField field = estimate_curvatures(mesh, free, creases, input.control);
+        const std::vector<std::uint8_t> regular = find_regular(mesh, creases, field, rules.jump, input.control);
+        result.labels = curvature_patches(mesh, creases, field, regular, rules, input.control);
+    }
+    for (const std::int32_t label : result.labels) {
+        result.regions = std::max(result.regions, static_cast<std::size_t>(label + 1));
+    }
+    const std::vector<std::uint8_t> rest =
+        faces_where(explained, [&](std::size_t f) { return explained[f] < 0 && result.labels[f] < 0; });
+    if (std::find(rest.begin(), rest.end(), 1) == rest.end()) return result;
+
+    FastOptions options = fast_options(input.options);
+    options.misfit_angle = freeform_misfit_angle;
+    options.active = rest;
+    FlowResult grouped = run_fast({mesh, &creases, input.options, input.control}, options);
+    for (std::size_t f = 0; f < rest.size(); ++f) {
+        if (rest[f] == 0)
+            grouped.labels[f] =
+                result.labels[f] < 0 ? -1 : result.labels[f] + static_cast<std::int32_t>(grouped.regions);
+    }
+    grouped.regions += result.regions;
+    grouped.fits.clear();
+    return grouped;
+}
+
+}  // namespace quadseg::flow
