@@ -40,6 +40,9 @@ double normal_noise(const mesh::WorkMesh& mesh, double weight) {
 }
 
 constexpr std::size_t many_leaves = 64;
+/// Share of the energy that a step of the relaxation must have won for another one, where a number of regions is asked
+/// for.
+constexpr double last_gain = 5e-3;
 
 class FastFlow {
   public:
@@ -205,6 +208,7 @@ class FastFlow {
         partition::RelaxOptions options;
         options.moment_steps = fast_.moment_steps;
         options.steps = fast_.relax_steps;
+        if (fast_.regions > 0) options.stop = last_gain;
         options.fit.weight = weight_;
         options.fit.plane_tolerance_per_area = true;
         partition::Relaxed relaxed = partition::relax(passage_, labels_, std::move(regions_), options, control_);

@@ -354,7 +354,11 @@ class Finisher {
         }
         surface::FitOptions options;
         if (by_energy(r)) options.iterations = energy_refinement_steps;
-        if (fit.ok) refine_choice(fit.surface, sample, own, options, result);
+        if (fit.ok && by_energy(r) && few.points.size() == sample.points.size()) {
+            result.surface = fit.surface;
+        } else if (fit.ok) {
+            refine_choice(fit.surface, sample, own, options, result);
+        }
         (void)quadric_of(result.surface, result.centroid, result.quadric);
     }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace quadseg::flow {
@@ -32,23 +33,52 @@ void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const Evaluat
     }
 }
 
-/// General quadrics, whose foot points are dear, are evaluated once a vertex.
-void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const surface::QuadricEvaluator& evaluator,
-                   RegionQuality& q) {
+/// visit(vertex, weight) once a vertex of the faces, ascending; the weight is a third of the areas of its faces.
+template <class Visit>
+void for_weighted_vertices(const mesh::WorkMesh& mesh, const Faces& faces, const Visit& visit) {
+    const auto count = static_cast<std::size_t>(faces.second - faces.first);
+    std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
+    for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+        for (const std::uint32_t v : mesh.faces[*f]) {
+            low = std::min(low, v);
+            high = std::max(high, v);
+        }
+    }
+    if (count > 0 && high - low <= 16 * count) {
+        // Numbered by first use along the faces, they lie close together.
+        std::vector<double> weight(high - low + 1, -1);
+        for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
+            for (const std::uint32_t v : mesh.faces[*f]) {
+                weight[v - low] = std::max(weight[v - low], 0.0) + mesh.areas[*f] / 3;
+            }
+        }
+        for (std::uint32_t v = low; v <= high; ++v) {
+            if (weight[v - low] >= 0) visit(v, weight[v - low]);
+        }
+        return;
+    }
     std::vector<std::pair<std::uint32_t, double>> weights;
-    weights.reserve(3 * static_cast<std::size_t>(faces.second - faces.first));
+    weights.reserve(3 * count);
     for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
         for (const std::uint32_t v : mesh.faces[*f]) weights.emplace_back(v, mesh.areas[*f] / 3);
     }
     std::stable_sort(weights.begin(), weights.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < weights.size();) {
         const std::uint32_t v = weights[i].first;
-        const double d = std::abs(evaluator.distance(mesh.positions[v]));
         double weight = 0;
         for (; i < weights.size() && weights[i].first == v; ++i) weight += weights[i].second;
+        visit(v, weight);
+    }
+}
+
+/// General quadrics, whose foot points are dear, are evaluated once a vertex.
+void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const surface::QuadricEvaluator& evaluator,
+                   RegionQuality& q) {
+    for_weighted_vertices(mesh, faces, [&](std::uint32_t v, double weight) {
+        const double d = std::abs(evaluator.distance(mesh.positions[v]));
         q.squared_distance += weight * d * d;
         q.max_distance = std::max(q.max_distance, d);
-    }
+    });
 }
 
 /// Planes need no polynomials: ∫f² = |t|/12 (Σf_i² + (Σf_i)²), and the normals differ by a constant.
