@@ -120,7 +120,9 @@ void make_plate(Builder& builder, Pcg random) {
     const double dome_edge = vary(3);
     holes.top[at(2, 0)] = turned(
         [=](Turning& t) { t.sphere_cap(dome_edge, -std::sqrt(dome * dome - dome_edge * dome_edge), dome, true); });
-    holes.top[at(1, 2)] = ellipsoid_bump(vary(3.4), vary(2.3), vary(2.6));
+    // Drawn one by one: compilers evaluate the arguments of a call in different orders.
+    const double c = vary(2.6), b = vary(2.3), a = vary(3.4);
+    holes.top[at(1, 2)] = ellipsoid_bump(a, b, c);
     const double pin = vary(1.9);
     const double pin_rise = vary(3);
     holes.top[at(2, 2)] = turned([=](Turning& t) {  // pin with a spherical end

@@ -136,7 +136,10 @@ void make_quadrics(Builder& builder, Pcg random) {
         top.push_back(post(Type::elliptic_cylinder, a, b, vary(4), {{1 / (a * a), 1 / (b * b), 0}, {}, -1}, 0,
                            {a, b, 0}, [](double) { return 1.0; }));
     }
-    top.push_back(block(Type::hyperbolic_paraboloid, vary(3.3), vary(3), vary(0.16), -vary(0.14)));
+    {  // Drawn one by one: compilers evaluate the arguments of a call in different orders.
+        const double q = -vary(0.14), p = vary(0.16), rise = vary(3), a = vary(3.3);
+        top.push_back(block(Type::hyperbolic_paraboloid, a, rise, p, q));
+    }
     {
         const double a = vary(1.05);
         const double b = vary(0.7);
@@ -179,7 +182,10 @@ void make_quadrics(Builder& builder, Pcg random) {
             Type::elliptic_cone, a, b, {{1 / (a * a), 1 / (b * b), -1}, {}, 0}, tip, {a, b, 0},
             [=](double rho) { return tip * rho; }, [=](double rho) { return tip * (1 - rho); }));
     }
-    top.push_back(block(Type::parabolic_cylinder, vary(3.2), vary(4), -vary(0.25), 0));
+    {
+        const double p = -vary(0.25), rise = vary(4), a = vary(3.2);
+        top.push_back(block(Type::parabolic_cylinder, a, rise, p, 0));
+    }
     {
         const double r = vary(1.6);
         const double major = vary(2.4);

@@ -185,7 +185,9 @@ class RoundedOctahedron {
 }  // namespace
 
 void make_rounded_octahedron(Builder& builder, Pcg random) {
-    RoundedOctahedron(builder, random.uniform(18, 22), random.uniform(3, 6)).build();
+    // Drawn one by one: compilers evaluate the arguments of a call in different orders.
+    const double radius = random.uniform(3, 6), size = random.uniform(18, 22);
+    RoundedOctahedron(builder, size, radius).build();
 }
 
 }  // namespace quadseg::datasets
