@@ -62,14 +62,20 @@ void append(std::vector<Candidate>& all, std::vector<Candidate>&& more) {
 /// A second opinion where facets turn suspiciously far: surfaces that turn less are searched beneath; selection
 /// decides.
 void ask_again(const Scene& scene, double step, std::vector<Candidate>& candidates) {
-    std::vector<std::uint8_t> covered(scene.mesh.face_count(), 0);
+    const auto turns = [&](const Candidate& c) {
+        return c.surface.type != SurfaceType::plane && c.step > suspicious_turn * step;
+    };
+    // Where nothing was found there is nothing that turns less either.
+    std::vector<std::uint8_t> covered(scene.mesh.face_count(), no_seed);
     bool suspicious = false;
     for (const Candidate& candidate : candidates) {
-        const bool turns = candidate.surface.type != SurfaceType::plane && candidate.step > suspicious_turn * step;
-        if (turns) suspicious = true;
-        if (!turns) {
-            for (const std::uint32_t f : candidate.faces) covered[f] = 1;
-        }
+        if (!turns(candidate)) continue;
+        suspicious = true;
+        for (const std::uint32_t f : candidate.faces) covered[f] = 0;
+    }
+    for (const Candidate& candidate : candidates) {
+        if (turns(candidate)) continue;
+        for (const std::uint32_t f : candidate.faces) covered[f] = explained;
     }
     if (!suspicious) return;
     append(candidates, search_surfaces(scene, {.rows_only = true, .most_step = suspicious_turn * step}, covered));

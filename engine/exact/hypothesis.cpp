@@ -248,12 +248,15 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     options.iterations = 20;
     options.minimum_scale = tolerance / 1000;
     options.hopeless = std::min(1000 * tolerance, std::max(30 * tolerance, scene.tolerances.trim));
+    options.wanted = tolerance;
     for (const SurfaceType type : types) {
         if (p.points.size() < static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 3) continue;
         for (const std::vector<Vec3>* normals : {&p.jet_normals, &p.face_normals}) {
             if (normals->empty()) continue;
-            // Height fields over the mean plane are poor only where facets turn far.
-            if (normals == &p.face_normals && !p.jet_normals.empty() && !coarse) break;
+            // Height fields over the mean plane are poor only where facets turn far; planes and spheres start from
+            // points.
+            const bool from_points = type == SurfaceType::plane || type == SurfaceType::sphere;
+            if (normals == &p.face_normals && !p.jet_normals.empty() && (!coarse || from_points)) break;
             const surface::PointSet points{p.points, *normals, {}};
             const surface::SurfaceFit fit = surface::fit(type, points, options);
             if (!holds(scene, fit, points, tolerance)) continue;

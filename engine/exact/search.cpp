@@ -58,22 +58,20 @@ class ChartSearch {
                 } else {
                     hush(seeds[i]);
                     for (const std::uint32_t f : found[i].refused) {
-                        if (scene_.chart[f] == chart_ && covered_[f] == 0) covered_[f] = quiet;
+                        if (scene_.chart[f] == chart_ && covered_[f] == 0) covered_[f] = no_seed;
                     }
                 }
             }
             at_once_ = any ? std::max<std::size_t>(1, at_once_ / 2) : std::min(most_seeds_at_once, at_once_ * 2);
         }
         for (const std::uint32_t f : faces_) {
-            if (covered_[f] == quiet) covered_[f] = 0;
+            if (covered_[f] == no_seed) covered_[f] = 0;
         }
     }
 
     std::vector<Candidate> take() { return std::move(candidates_); }
 
   private:
-    static constexpr std::uint8_t explained = 1, quiet = 2;
-
     std::vector<std::uint32_t> take_seeds(std::size_t& next) {
         std::vector<std::uint32_t> seeds;
         for (; next < faces_.size() && seeds.size() < at_once_; ++next) {
@@ -99,8 +97,8 @@ class ChartSearch {
         const Patch patch = collect_patch(
             scene_, seed, quiet_zone(++failures_), PatchShape{},
             [&](std::uint32_t f) { return scene_.chart[f] == chart_ && covered_[f] != explained; }, marks_.local());
-        for (const std::uint32_t f : patch.faces) covered_[f] = quiet;
-        covered_[seed] = quiet;
+        for (const std::uint32_t f : patch.faces) covered_[f] = no_seed;
+        covered_[seed] = no_seed;
     }
 
     const Scene& scene_;

@@ -4,6 +4,7 @@
 #include "exact/candidate.h"
 #include "exact/face_fit.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace quadseg::exact {
@@ -13,6 +14,9 @@ struct SearchOptions {
     bool loose = false;      ///< second pass, for parts whose edge curves are approximations
     double most_step = 10;   ///< candidates whose facets turn further are not taken, radians
 };
+
+/// Of `covered`, where 0 is free: belongs to a candidate; or can be grown into, but no search starts there.
+inline constexpr std::uint8_t explained = 1, no_seed = 2;
 
 /// Candidates of all charts, in an order that depends on the mesh only. `covered` (a flag a face) is read and extended.
 /// Stopped: those found so far; the control knows.

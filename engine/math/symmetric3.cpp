@@ -1,7 +1,7 @@
 #include "math/symmetric3.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace quadseg {
 
@@ -37,7 +37,12 @@ EigenSystem eigen_decomposition(const Symmetric3& m) noexcept {
         }
     }
     int order[3] = {0, 1, 2};
-    std::stable_sort(order, order + 3, [&](int i, int j) { return a[i][i] < a[j][j]; });
+    const auto sort = [&](int& i, int& j) {
+        if (a[j][j] < a[i][i]) std::swap(i, j);
+    };
+    sort(order[0], order[1]);
+    sort(order[1], order[2]);
+    sort(order[0], order[1]);
     EigenSystem result{};
     for (int k = 0; k < 3; ++k) {
         result.values[k] = a[order[k]][order[k]];

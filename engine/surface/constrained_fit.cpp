@@ -45,7 +45,7 @@ class Frames {
         normals_ = eigen_decomposition(m);
         quadric_ =
             eigen_decomposition({2 * general[4], general[5], general[6], 2 * general[7], general[8], 2 * general[9]});
-        const Surface t = start_torus(points);
+        const Surface t = TorusAxes(points).start(points);
         line_point_ = to_vec3(t.point);
         line_ = to_vec3(t.axis);
         apex_ = to_vec3(start_cone(points).point);

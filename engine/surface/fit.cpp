@@ -179,7 +179,8 @@ SurfaceFit fit(SurfaceType type, const PointSet& p, const FitOptions& options) {
     const bool from_points = type == SurfaceType::plane || type == SurfaceType::sphere;
     if (!points.usable() || (points.normals.empty() && !from_points)) return failed(type);
     Attempt best;
-    auto enough = [&] { return best.ok && best.median <= exact_fit; };
+    const double good = std::max(exact_fit, 0.1 * options.wanted / points.extent);
+    auto enough = [&] { return best.ok && best.median <= good; };
     auto attempt_from = [&](const Surface& start) {
         const Attempt next = attempt(start, type, points, options);
         if (better(next, best)) best = next;
@@ -198,18 +199,20 @@ SurfaceFit fit(SurfaceType type, const PointSet& p, const FitOptions& options) {
         case SurfaceType::cone:
             if (!attempt_from(start_cone(points))) attempt_from(start_cone_from(start_cylinder(points), points));
             break;
-        default:
-            if (attempt_from(start_torus(points, 0)) || attempt_from(start_torus(points, 1))) break;
-            {
+        default: {
+            const TorusAxes axes(points);
+            if (attempt_from(axes.start(points, 0)) || attempt_from(axes.start(points, 1))) break;
+            const Surface cylinder = start_cylinder(points);
+            if (!(options.wanted > 0)) {
                 // A cylinder that fits tells a fillet's bend better than one that only starts.
-                const Surface cylinder = start_cylinder(points);
                 FitOptions few = options;
                 few.iterations = 5;
                 const Attempt fitted = attempt(cylinder, SurfaceType::cylinder, points, few);
                 if (attempt_from(start_torus_from(fitted.ok ? fitted.surface : cylinder, points))) break;
-                if (attempt_from(start_torus_from(cylinder, points))) break;
-                attempt_from(start_torus(points, 2));
             }
+            if (attempt_from(start_torus_from(cylinder, points))) break;
+            attempt_from(axes.start(points, 2));
+        }
     }
     return finished(best, type, true, points, p);
 }
@@ -242,7 +245,7 @@ Surface initial_cone(const PointSet& p) {
     return initial(p, SurfaceType::cone, start_cone);
 }
 Surface initial_torus(const PointSet& p) {
-    return initial(p, SurfaceType::torus, [](const LocalPoints& points) { return start_torus(points); });
+    return initial(p, SurfaceType::torus, [](const LocalPoints& points) { return TorusAxes(points).start(points); });
 }
 
 }  // namespace quadseg::surface

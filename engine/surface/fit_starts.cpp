@@ -11,8 +11,7 @@ namespace quadseg::surface {
 namespace {
 
 /// Solves m x = v for a symmetric matrix by its eigenvalues; directions below `cut` of the largest are left at 0.
-Vec3 solve(const Symmetric3& m, const Vec3& v, double cut) {
-    const EigenSystem e = eigen_decomposition(m);
+Vec3 solve(const EigenSystem& e, const Vec3& v, double cut) {
     const double top = std::max(std::abs(e.values[0]), std::abs(e.values[2]));
     Vec3 x;
     for (int i = 0; i < 3; ++i)
@@ -138,7 +137,7 @@ Surface start_sphere(const LocalPoints& p) {
         right += w * uu * u;
         square += w * uu;
     }
-    Vec3 centre = solve(m, right, 1e-13);
+    Vec3 centre = solve(eigen_decomposition(m), right, 1e-13);
     double radius = std::sqrt(square / sum + squared_norm(centre));
     centre += mean;
     if (!p.normals.empty()) {
@@ -231,7 +230,7 @@ Surface start_cone(const LocalPoints& p) {
     }
     mean = mean / (sum > 0 ? sum : 1);
     for (std::size_t i = 0; i < p.normals.size(); ++i) spread.add_outer(p.normals[i] - mean, p.weight[i]);
-    const Vec3 apex = solve(m, right, 1e-14);
+    const Vec3 apex = solve(eigen_decomposition(m), right, 1e-14);
     Vec3 axis = eigen_decomposition(spread).vectors[0];
     double along = 0, across = 0;
     for (std::size_t i = 0; i < p.size(); ++i) along += p.weight[i] * dot(p.point(i) - apex, axis);
@@ -292,7 +291,7 @@ Surface start_torus_about(const Vec3& point, const Vec3& direction, const LocalP
     return s;
 }
 
-Surface start_torus(const LocalPoints& p, int rank) {
+TorusAxes::TorusAxes(const LocalPoints& p) {
     // Normal lines (n, x×n) meet the axis (a, m): n·m + a·(x×n) = 0, the 6×6 line complex, m eliminated.
     Symmetric3 nn, qq;
     double nq[3][3] = {};
@@ -304,8 +303,9 @@ Surface start_torus(const LocalPoints& p, int rank) {
             for (int c = 0; c < 3; ++c) nq[r][c] += p.weight[i] * n[r] * q[c];
     }
     const double cut = 1e-10;
+    const EigenSystem directions = eigen_decomposition(nn);
     Vec3 columns[3];  // nn⁻¹ · (column of nq)
-    for (int c = 0; c < 3; ++c) columns[c] = solve(nn, {nq[0][c], nq[1][c], nq[2][c]}, cut);
+    for (int c = 0; c < 3; ++c) columns[c] = solve(directions, {nq[0][c], nq[1][c], nq[2][c]}, cut);
     double reduced[3][3];
     const double full[3][3] = {{qq.xx, qq.xy, qq.xz}, {qq.xy, qq.yy, qq.yz}, {qq.xz, qq.yz, qq.zz}};
     for (int r = 0; r < 3; ++r)
@@ -314,8 +314,15 @@ Surface start_torus(const LocalPoints& p, int rank) {
     const EigenSystem e = eigen_decomposition({reduced[0][0], 0.5 * (reduced[0][1] + reduced[1][0]),
                                                0.5 * (reduced[0][2] + reduced[2][0]), reduced[1][1],
                                                0.5 * (reduced[1][2] + reduced[2][1]), reduced[2][2]});
-    const Vec3 a = e.vectors[rank];
-    return start_torus_about(cross(a, -1.0 * (a.x * columns[0] + a.y * columns[1] + a.z * columns[2])), a, p);
+    for (int rank = 0; rank < 3; ++rank) {
+        const Vec3 a = e.vectors[rank];
+        direction_[rank] = a;
+        point_[rank] = cross(a, -1.0 * (a.x * columns[0] + a.y * columns[1] + a.z * columns[2]));
+    }
+}
+
+Surface TorusAxes::start(const LocalPoints& p, int rank) const {
+    return start_torus_about(point_[rank], direction_[rank], p);
 }
 
 Surface start_torus_from(const Surface& cylinder, const LocalPoints& p) {

@@ -14,8 +14,16 @@ Surface start_cylinder_along(const LocalPoints& p);
 Surface start_cone(const LocalPoints& p);
 /// The apex and half angle that the points show about the axis of a cylinder.
 Surface start_cone_from(const Surface& cylinder, const LocalPoints& p);
-/// From the 6×6 line complex; rank: which eigenvector (0: the best).
-Surface start_torus(const LocalPoints& p, int rank = 0);
+/// Axes that the normals' lines meet: eigenvectors of the 6×6 line complex.
+class TorusAxes {
+  public:
+    explicit TorusAxes(const LocalPoints& p);
+    /// rank: which eigenvector (0: the best).
+    Surface start(const LocalPoints& p, int rank = 0) const;
+
+  private:
+    Vec3 direction_[3], point_[3];
+};
 /// A cylinder bent along its axis as the points show: fillets whose major radius is large.
 Surface start_torus_from(const Surface& cylinder, const LocalPoints& p);
 /// The circle that the points show in the half planes through the axis (point, direction).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace quadseg::surface {
@@ -18,6 +19,10 @@ constexpr double indistinguishable = 1e-13;
 // sphere).
 constexpr double no_effect = 1e-15;
 constexpr int hopeless_after = 5;
+// Up to so many values the median is found by counting.
+constexpr std::size_t few = 48;
+// Steps in a row that leave the median where it is, after which it is not going to fall much.
+constexpr int idle_steps = 3;
 
 template <int K>
 struct NormalEquations {
@@ -54,9 +59,38 @@ class Problem {
             return 0.5 * sum;
         }
         const double inverse = 1 / (scale * scale);
+        if (p_.unit_weights) return 0.5 * scale * scale * sum_of_logs(distance, inverse);
         for (std::size_t i = 0; i < p_.size(); ++i)
             sum += p_.weight[i] * std::log1p(distance[i] * distance[i] * inverse);
         return 0.5 * scale * scale * sum;
+    }
+
+    /// Σ log(1 + d²·inverse) as the logarithm of products.
+    double sum_of_logs(const double* distance, double inverse) const {
+        double sum = 0;
+        std::size_t i = 0;
+        while (i < p_.size()) {
+            double product[lane_count];
+            std::fill_n(product, lane_count, 1.0);
+            // Not more factors than leave the product of the lanes' within the range of doubles.
+            for (int block = 0; block < 4 && i < p_.size(); ++block, i += lane_count) {
+                if (i + lane_count <= p_.size()) {
+                    for (std::size_t l = 0; l < lane_count; ++l)
+                        product[l] *= 1 + distance[i + l] * distance[i + l] * inverse;
+                } else {
+                    for (std::size_t l = 0; i + l < p_.size(); ++l)
+                        product[l] *= 1 + distance[i + l] * distance[i + l] * inverse;
+                }
+            }
+            double all = 1;
+            for (const double v : product) all *= v;
+            if (all < std::numeric_limits<double>::max()) {
+                sum += std::log(all);
+            } else {
+                for (const double v : product) sum += std::log(v);
+            }
+        }
+        return sum;
     }
 
     NormalEquations<K> normal_equations(const ShapeFrame& f, double scale) const {
@@ -100,35 +134,37 @@ class Problem {
     /// Cholesky of the system scaled to a unit diagonal plus damping. False: not positive definite. smallest: least
     /// squared pivot.
     static bool solve(const NormalEquations<K>& e, double damping, double* step, double& smallest) {
-        double s[K], l[K][K], v[K];
+        // Rows of the upper factor, padded to whole lanes: what is left of a column below a pivot is one vector.
+        alignas(64) double u[K][lane_count] = {};
+        double s[K], v[K];
         smallest = std::numeric_limits<double>::infinity();
         for (int i = 0; i < K; ++i) {
             s[i] = e.h[i][i] > 0 ? 1 / std::sqrt(e.h[i][i]) : 0;
             if (!std::isfinite(s[i])) return false;
         }
         for (int i = 0; i < K; ++i) {
-            for (int j = 0; j <= i; ++j) {
-                double sum = i == j ? 1 + damping : e.h[i][j] * s[i] * s[j];
-                for (int k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
-                if (i == j) {
-                    if (s[i] == 0) sum = 0;
-                    smallest = std::min(smallest, sum);
-                    if (!(sum > 1e-15)) return false;
-                    l[i][i] = std::sqrt(sum);
-                } else {
-                    l[i][j] = sum / l[j][j];
-                }
-            }
+            for (int j = 0; j < K; ++j) u[i][j] = e.h[i][j] * s[i] * s[j];
+            u[i][i] = s[i] == 0 ? 0 : 1 + damping;
+            v[i] = -e.g[i] * s[i];
         }
-        for (int i = 0; i < K; ++i) {
-            double sum = -e.g[i] * s[i];
-            for (int k = 0; k < i; ++k) sum -= l[i][k] * v[k];
-            v[i] = sum / l[i][i];
+        double inverse[K];
+        for (int k = 0; k < K; ++k) {
+            const double pivot = u[k][k];
+            smallest = std::min(smallest, pivot);
+            if (!(pivot > 1e-15)) return false;
+            inverse[k] = 1 / std::sqrt(pivot);
+            for (std::size_t l = 0; l < lane_count; ++l) u[k][l] *= inverse[k];
+            v[k] *= inverse[k];
+            for (int i = k + 1; i < K; ++i) {
+                const double factor = u[k][i];
+                for (std::size_t l = 0; l < lane_count; ++l) u[i][l] -= factor * u[k][l];
+                v[i] -= factor * v[k];
+            }
         }
         for (int i = K - 1; i >= 0; --i) {
             double sum = v[i];
-            for (int k = i + 1; k < K; ++k) sum -= l[k][i] * v[k];
-            v[i] = sum / l[i][i];
+            for (int k = i + 1; k < K; ++k) sum -= u[i][k] * v[k];
+            v[i] = sum * inverse[i];
         }
         for (int i = 0; i < K; ++i) step[i] = v[i] * s[i];
         return true;
@@ -141,9 +177,9 @@ class Problem {
         double scale = scale_of(p_.distance), current = cost(p_.distance, scale), damping = first_damping;
         best.finite = std::isfinite(current);
         if (!best.finite) return best;
-        const double hopeless = options.hopeless / p_.extent;
+        const double hopeless = options.hopeless / p_.extent, wanted = options.wanted / p_.extent;
         double smallest = 0;
-        int plateau = 0, accepted = 0;
+        int plateau = 0, accepted = 0, idle = 0;
         bool fresh = false;
         NormalEquations<K> e{};
         bool falling = false;  // the last step still paid a lot
@@ -176,6 +212,7 @@ class Problem {
             const double scale_there = robust_ ? scale_of(p_.distance) : scale;
             const bool steady = !robust_ || scale_there > 0.99 * scale;
             plateau = !steady || gain > 1e-4 * current ? 0 : plateau + (gain <= 1e-9 * current ? 2 : 1);
+            idle = scale_there > 0.9 * scale ? idle + 1 : 0;
             falling = robust_ ? scale_there < 0.7 * scale : gain > 0.3 * current;
             scale = scale_there;
             current = robust_ ? cost(p_.distance, scale) : cost_there;
@@ -185,10 +222,13 @@ class Problem {
             if (hopeless > 0 && accepted == hopeless_after &&
                 median_magnitude(p_.distance, p_.size(), p_.sorted) > hopeless)
                 break;
+            // The scale is three times the median.
+            if (robust_ && wanted > 0 && idle >= idle_steps && scale > 9 * wanted) break;
         }
         best.median = median_magnitude(p_.distance, p_.size(), p_.sorted);
+        if (wanted > 0 && !(best.median <= wanted)) return best;
         double step[K], total = 0;
-        e = normal_equations(best.frame, scale);
+        if (!fresh) e = normal_equations(best.frame, scale);
         best.determined = solve(e, 0, step, smallest) && smallest > indistinguishable;
         for (std::size_t i = 0; i < p_.size(); ++i) total += p_.weight[i];
         for (int i = 0; i < K; ++i) best.determined = best.determined && e.h[i][i] > no_effect * total;
@@ -214,12 +254,35 @@ class Problem {
 }  // namespace
 
 double median_magnitude(const double* values, std::size_t n, double* scratch) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     if (n == 0) return 0;
+    const std::size_t middle = n / 2;
+    if (n <= few) {
+        // Counting ranks takes no branches that depend on the values.
+        double magnitude[few];
+        const std::size_t padded = (n + lane_count - 1) / lane_count * lane_count;
+        std::fill_n(magnitude + padded - lane_count, lane_count, infinity);
+        bool numbers = true;
+        for (std::size_t i = 0; i < n; ++i) {
+            magnitude[i] = std::abs(values[i]);
+            numbers = numbers && !std::isnan(magnitude[i]);
+        }
+        if (!numbers) return infinity;
+        for (std::size_t i = 0; i < n; ++i) {
+            std::int64_t below = 0, up_to = 0;
+            for (std::size_t j = 0; j < padded; ++j) {
+                below += magnitude[j] < magnitude[i] ? 1 : 0;
+                up_to += magnitude[j] <= magnitude[i] ? 1 : 0;
+            }
+            const auto rank = static_cast<std::int64_t>(middle);
+            if (below <= rank && rank < up_to) return magnitude[i];
+        }
+    }
     for (std::size_t i = 0; i < n; ++i) scratch[i] = std::abs(values[i]);
     for (std::size_t i = 0; i < n; ++i)
-        if (std::isnan(scratch[i])) return std::numeric_limits<double>::infinity();
-    std::nth_element(scratch, scratch + n / 2, scratch + n);
-    return scratch[n / 2];
+        if (std::isnan(scratch[i])) return infinity;
+    std::nth_element(scratch, scratch + middle, scratch + n);
+    return scratch[middle];
 }
 
 Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options) {

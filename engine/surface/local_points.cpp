@@ -33,6 +33,7 @@ LocalPoints::LocalPoints(const PointSet& p) : size_(p.points.size()) {
     if (!std::isfinite(scale)) return;
     usable_ = true;
     const bool weighted = p.weights.size() == size_;
+    unit_weights = !weighted;
     for (std::size_t i = 0; i < padded_; ++i) {
         const bool real = i < size_;
         const Vec3 u = real ? (p.points[i] - centre) * scale : Vec3{};

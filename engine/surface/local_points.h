@@ -33,6 +33,7 @@ class LocalPoints {
     double extent = 0;  ///< RMS distance from the centre
     double *x = nullptr, *y = nullptr, *z = nullptr;
     double* weight = nullptr;    ///< 0 in the padding
+    bool unit_weights = true;    ///< weight is 1 but in the padding
     double* distance = nullptr;  ///< scratch
     double* trial = nullptr;     ///< scratch
     double* sorted = nullptr;    ///< scratch

@@ -10,23 +10,35 @@ namespace {
 
 constexpr double steepest_tilt = 89.9 / 180 * std::numbers::pi;
 
-Vec3 rotated(const Vec3& v, const Vec3& rotation) noexcept {
-    const double angle = norm(rotation);
-    if (!(angle > 0)) return v;
-    const Vec3 k = rotation / angle;
-    const double half = std::sin(0.5 * angle);
-    return v + std::sin(angle) * cross(k, v) + 2 * half * half * cross(k, cross(k, v));
-}
+class Rotation {
+  public:
+    explicit Rotation(const Vec3& rotation) noexcept {
+        const double angle = norm(rotation);
+        if (!(angle > 0)) return;
+        axis_ = rotation / angle;
+        const double half = std::sin(0.5 * angle);
+        sine_ = std::sin(angle);
+        versine_ = 2 * half * half;
+    }
+    Vec3 operator()(const Vec3& v) const noexcept {
+        const Vec3 across = cross(axis_, v);
+        return v + sine_ * across + versine_ * cross(axis_, across);
+    }
+
+  private:
+    Vec3 axis_;
+    double sine_ = 0, versine_ = 0;
+};
 
 }  // namespace
 
 ShapeFrame stepped(const ShapeFrame& f, const double* step) noexcept {
     ShapeFrame next = f;
     const bool round = f.type == SurfaceType::cylinder || f.type == SurfaceType::cone || f.type == SurfaceType::torus;
-    const Vec3 rotation = step[1] * f.g + step[2] * f.b + (round ? step[3] : 0.0) * f.n;
+    const Rotation rotated(step[1] * f.g + step[2] * f.b + (round ? step[3] : 0.0) * f.n);
     next.p = f.p + step[0] * f.n;
-    next.n = normalized(rotated(f.n, rotation));
-    const Vec3 g = rotated(f.g, rotation);
+    next.n = normalized(rotated(f.n));
+    const Vec3 g = rotated(f.g);
     next.g = normalized(g - dot(g, next.n) * next.n);
     next.b = cross(next.n, next.g);
     if (f.type == SurfaceType::sphere) next.curvature += step[3];

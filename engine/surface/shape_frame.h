@@ -32,6 +32,11 @@ inline constexpr int parameters_of = type == SurfaceType::plane      ? 3
                                      : type == SurfaceType::cone     ? 6
                                                                      : 7;
 
+/// The larger one, the second if the first is no number: what processors do at once, unlike std::fmax.
+[[gnu::always_inline]] inline double at_least(double value, double least) noexcept {
+    return value > least ? value : least;
+}
+
 /// Distance of the point with frame coordinates (un, ug, ub) to the shape, signed along n, and its derivatives.
 template <SurfaceType type>
 struct ShapeDistance {
@@ -45,7 +50,7 @@ struct ShapeDistance {
             return un;
         } else if constexpr (type == SurfaceType::sphere) {
             const double a = k * (un * un + ug * ug + ub * ub) + 2 * un;
-            return a / (1 + std::sqrt(std::fmax(1 + k * a, 0.0)));
+            return a / (1 + std::sqrt(at_least(1 + k * a, 0.0)));
         } else {
             const double y = c * un + s * ug, z = c * ug - s * un;  // along the radius through p and along the axis
             const double a = k * (y * y + ub * ub) + 2 * c * y, turn = k * y + c;
@@ -54,7 +59,7 @@ struct ShapeDistance {
             const double flat = c * across - s * z;
             if constexpr (type == SurfaceType::torus) {
                 const double q = m * (across * across + z * z) + 2 * flat;
-                return q / (1 + std::sqrt(std::fmax(1 + m * q, 0.0)));
+                return q / (1 + std::sqrt(at_least(1 + m * q, 0.0)));
             } else {
                 return flat;
             }
@@ -71,7 +76,7 @@ struct ShapeDistance {
             return un;
         } else if constexpr (type == SurfaceType::sphere) {
             const double uu = un * un + ug * ug + ub * ub, a = k * uu + 2 * un;
-            const double root = std::sqrt(std::fmax(1 + k * a, 1e-30)), inverse = 1 / root, d = a / (1 + root);
+            const double root = std::sqrt(at_least(1 + k * a, 1e-30)), inverse = 1 / root, d = a / (1 + root);
             const double gn = (k * un + 1) * inverse, gg = k * ug * inverse, gb = k * ub * inverse;
             column(0) = -gn;
             column(1) = un * gb - ub * gn;
@@ -81,7 +86,7 @@ struct ShapeDistance {
         } else {
             const double y = c * un + s * ug, z = c * ug - s * un, mm = y * y + ub * ub;
             const double a = k * mm + 2 * c * y, turn = k * y + c;
-            const double rho = std::sqrt(std::fmax(turn * turn + k * k * ub * ub, 1e-30));
+            const double rho = std::sqrt(at_least(turn * turn + k * k * ub * ub, 1e-30));
             const double inverse = 1 / rho, below = 1 / (rho + c), across = a * below;
             const double across_y = turn * inverse, across_b = k * ub * inverse;
             const double across_k = (mm - across * (k * mm + c * y) * inverse) * below;
@@ -92,7 +97,7 @@ struct ShapeDistance {
             [[maybe_unused]] double d_minor = 0;
             if constexpr (type == SurfaceType::torus) {
                 const double far = across * across + z * z, q = m * far + 2 * flat;
-                const double root = std::sqrt(std::fmax(1 + m * q, 1e-30)), by = 1 / root;
+                const double root = std::sqrt(at_least(1 + m * q, 1e-30)), by = 1 / root;
                 d = q / (1 + root);
                 d_across = (m * across + c) * by;
                 d_z = (m * z - s) * by;
