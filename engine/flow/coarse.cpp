@@ -28,10 +28,10 @@ constexpr double independent_share = 0.9;
 /// Of the regions brought to the fine mesh a quarter are too many: the last merges see the true energies. (Where a
 /// single one would be a third of all, none: merging three surfaces' worth of four ended at twice the energy.)
 constexpr std::size_t regions_per_spare = 3;
-/// Teleportations on the simplified mesh, after merging. On the fine mesh, where each is as dear as many of these, only
-/// where surfaces explain the simplified one badly (RMS angle of the normals, degrees): spare regions do as well on
-/// parts, but shapes without surfaces have many local minima.
-constexpr int coarse_teleportations = 4, fine_teleportations = 3;
+/// Teleportations on the simplified mesh, after merging; more where surfaces explain it badly (RMS angle of the
+/// normals, degrees), as shapes without surfaces have many local minima. On the fine mesh, where each is as dear as
+/// many of these, spare regions do as well: none.
+constexpr std::size_t coarse_teleportations = 4;
 constexpr double organic_angle = 6;
 /// Regions on the simplified mesh before merging, for one that is wanted: 1 traps the loop in what insertion found, 2
 /// takes twice as long and ends no lower.
@@ -205,6 +205,14 @@ FlowResult run_coarse(const FlowInput& input, std::size_t coarse_faces, const Fl
 
 namespace {
 
+int teleportations_on_coarse(const FlowInput& input, double energy) {
+    const double angle = organic_angle * std::numbers::pi / 180;
+    const bool organic = energy > input.options.weight * angle * angle * input.mesh.total_area;
+    const std::size_t count = coarse_teleportations + (organic ? 1 + input.options.regions / 2 : 0);
+    const auto most = static_cast<std::size_t>(input.options.paper.teleportations);
+    return static_cast<int>(std::min(count, most));
+}
+
 FlowResult overshoot_and_merge(const FlowInput& input) {
     if (input.options.regions == 0) return run_paper(input);
     Options more = input.options;
@@ -213,7 +221,7 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
     FlowResult many = run_paper({input.mesh, input.features, more, input.control});
     if (many.partial) return many;
     more.regions = input.options.regions + (input.options.regions - 1) / regions_per_spare;
-    more.paper.teleportations = std::min(coarse_teleportations, input.options.paper.teleportations);
+    more.paper.teleportations = teleportations_on_coarse(input, many.energies.empty() ? 0 : many.energies.back());
     FlowResult result = run_paper({input.mesh, input.features, more, input.control}, &many.labels);
     result.energies.insert(result.energies.begin(), many.energies.begin(), many.energies.end());
     return result;
@@ -223,20 +231,12 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
 
 FlowResult run_paper_coarse(const FlowInput& input, std::size_t coarse_faces) {
     if (input.options.method == Method::hierarchical) return run_paper(input);  // merges from single faces up
-    bool organic = false;
-    const auto on_coarse = [&](const FlowInput& coarse) {
-        FlowResult result = overshoot_and_merge(coarse);
-        const double angle = organic_angle * std::numbers::pi / 180;
-        organic = !result.energies.empty() &&
-                  result.energies.back() > coarse.options.weight * angle * angle * coarse.mesh.total_area;
-        return result;
-    };
-    const auto on_fine = [&](const FlowInput& fine, const partition::Labels& labels) {
-        Options fewer = fine.options;
-        fewer.paper.teleportations = organic ? std::min(fine_teleportations, fewer.paper.teleportations) : 0;
-        return run_paper({fine.mesh, fine.features, fewer, fine.control}, &labels);
-    };
-    return run_coarse(input, coarse_faces, on_coarse, on_fine);
+    return run_coarse(input, coarse_faces, overshoot_and_merge,
+                      [](const FlowInput& fine, const partition::Labels& labels) {
+                          Options fewer = fine.options;
+                          fewer.paper.teleportations = 0;
+                          return run_paper({fine.mesh, fine.features, fewer, fine.control}, &labels);
+                      });
 }
 
 FlowResult run_fast_coarse(const FlowInput& input, std::size_t coarse_faces) {
