@@ -59,7 +59,8 @@ class Problem {
             return 0.5 * sum;
         }
         const double inverse = 1 / (scale * scale);
-        if (p_.unit_weights) return 0.5 * scale * scale * sum_of_logs(distance, inverse);
+        // Where rounding is all that is left, the last digits of the cost decide when to stop.
+        if (p_.unit_weights && scale > 1e3 * rounding) return 0.5 * scale * scale * sum_of_logs(distance, inverse);
         for (std::size_t i = 0; i < p_.size(); ++i)
             sum += p_.weight[i] * std::log1p(distance[i] * distance[i] * inverse);
         return 0.5 * scale * scale * sum;
@@ -143,18 +144,18 @@ class Problem {
             if (!std::isfinite(s[i])) return false;
         }
         for (int i = 0; i < K; ++i) {
-            for (int j = 0; j < K; ++j) u[i][j] = e.h[i][j] * s[i] * s[j];
+            for (int j = 0; j < K; ++j) u[i][j] = e.h[i][j] * s[j] * s[i];
             u[i][i] = s[i] == 0 ? 0 : 1 + damping;
             v[i] = -e.g[i] * s[i];
         }
-        double inverse[K];
+        double root[K];
         for (int k = 0; k < K; ++k) {
             const double pivot = u[k][k];
             smallest = std::min(smallest, pivot);
             if (!(pivot > 1e-15)) return false;
-            inverse[k] = 1 / std::sqrt(pivot);
-            for (std::size_t l = 0; l < lane_count; ++l) u[k][l] *= inverse[k];
-            v[k] *= inverse[k];
+            root[k] = std::sqrt(pivot);
+            for (std::size_t l = 0; l < lane_count; ++l) u[k][l] /= root[k];
+            v[k] /= root[k];
             for (int i = k + 1; i < K; ++i) {
                 const double factor = u[k][i];
                 for (std::size_t l = 0; l < lane_count; ++l) u[i][l] -= factor * u[k][l];
@@ -164,7 +165,7 @@ class Problem {
         for (int i = K - 1; i >= 0; --i) {
             double sum = v[i];
             for (int k = i + 1; k < K; ++k) sum -= u[i][k] * v[k];
-            v[i] = sum * inverse[i];
+            v[i] = sum / root[i];
         }
         for (int i = 0; i < K; ++i) step[i] = v[i] * s[i];
         return true;
