@@ -31,10 +31,19 @@ Surface example(SurfaceType type) {
     }
 }
 
+/// So many steps of Levenberg-Marquardt on `points`: distance and derivatives, their products, an evaluation.
+double step_operations(SurfaceType type, std::size_t points, int steps) {
+    const int k = degrees_of_freedom(type);
+    return static_cast<double>(points) * steps * (40 + 10 * k + k * (k + 1));
+}
+constexpr int usual_steps = 8, steps_of_a_rejection = 5;
+
 void fit_40_points(benchmark::State& state) {
     const Surface s = example(SurfaceType(state.range(0)));
     const Patch patch = grid(s, {0, 1.5, 8}, {.2, 1.2, 5}, .05);
     for (auto _ : state) benchmark::DoNotOptimize(fit(s.type, {patch.points, patch.normals, {}}));
+    bench::report(state, 1, static_cast<double>(patch.points.size()) * 2 * sizeof(Vec3),
+                  step_operations(s.type, patch.points.size(), usual_steps));
 }
 BENCHMARK(fit_40_points)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
 
@@ -45,6 +54,8 @@ void reject_40_points(benchmark::State& state) {
     options.hopeless = 1e-6;
     const auto type = SurfaceType(state.range(0));
     for (auto _ : state) benchmark::DoNotOptimize(fit(type, {patch.points, patch.normals, {}}, options));
+    bench::report(state, 1, static_cast<double>(patch.points.size()) * 2 * sizeof(Vec3),
+                  step_operations(type, patch.points.size(), steps_of_a_rejection));
 }
 BENCHMARK(reject_40_points)->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
 
@@ -83,6 +94,9 @@ BENCHMARK(normal)->DenseRange(0, 4);
 void jet_of_30_points(benchmark::State& state) {
     const Patch patch = grid(example(SurfaceType::torus), {0, .5, 6}, {.2, .7, 5});
     for (auto _ : state) benchmark::DoNotOptimize(patch_normals(patch.points, patch.normals[12]));
+    // Normal equations of ten monomials, one factorisation.
+    const auto points = static_cast<double>(patch.points.size());
+    bench::report(state, 1, points * sizeof(Vec3), points * (20 + 10 * 11 + 2 * 10) + 10 * 10 * 10 / 3.0);
 }
 BENCHMARK(jet_of_30_points)->Unit(benchmark::kMicrosecond);
 

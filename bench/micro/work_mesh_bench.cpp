@@ -64,9 +64,9 @@ Arrays wavy_grid(std::size_t faces, bool shuffled) {
     return a;
 }
 
-void per_face(benchmark::State& state, std::size_t faces, double bytes) {
+void per_face(benchmark::State& state, std::size_t faces, double bytes, double operations = 0) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(faces));
-    bench::report(state, static_cast<double>(faces), bytes);
+    bench::report(state, static_cast<double>(faces), bytes, operations);
 }
 
 /// Arguments: faces, threads, shuffled.
@@ -78,8 +78,8 @@ void build(benchmark::State& state) {
                           [&] { benchmark::DoNotOptimize(mesh::build_work_mesh(arrays.view(), control)); });
     }
     // Input 12 + 12, keys 3 passes of 2 · 16 + 16, faces, neighbors and chains 3 · 12 twice, normal and area 32,
-    // other 40.
-    per_face(state, arrays.faces(), 24 + 112 + 72 + 32 + 40);
+    // other 40. Centroid and its cell 24, normal and area 26, half a vertex into the unit frame 3.
+    per_face(state, arrays.faces(), 24 + 112 + 72 + 32 + 40, 24 + 26 + 3);
 }
 BENCHMARK(build)
     ->ArgNames({"faces", "threads", "shuffled"})
@@ -97,7 +97,7 @@ void features(benchmark::State& state) {
             benchmark::DoNotOptimize(mesh::find_feature_edges(work, static_cast<double>(state.range(2)), control));
         });
     }
-    per_face(state, work.face_count(), 24 + 12 + 3);
+    per_face(state, work.face_count(), 24 + 12 + 3, 1.5 * 6);  // a product of normals an edge
 }
 /// 3 degrees: a good part of the edges is sharp and tested.
 BENCHMARK(features)
