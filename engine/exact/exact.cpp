@@ -5,6 +5,7 @@
 #include "exact/face_fit.h"
 #include "exact/found_so_far.h"
 #include "exact/grow.h"
+#include "exact/join.h"
 #include "exact/release.h"
 #include "exact/scene.h"
 #include "exact/search.h"
@@ -98,6 +99,13 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     append(candidates, search_surfaces(scene, {.loose = true}, covered));
     scene.control.check();
     selection = select(scene, candidates, step);
+    mark_covered(selection.owner, covered);
+    std::vector<Candidate> quadrics = search_surfaces(scene, {.quadrics = true}, covered);
+    scene.control.check();
+    if (!quadrics.empty()) {
+        append(candidates, std::move(quadrics));
+        selection = select(scene, candidates, step);
+    }
 
     Explained state;
     state.region = selection.owner;
@@ -107,6 +115,8 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     extend_to_borders(scene, step, state);
     unite_equal(scene, step, state);
     release_doubtful(scene, state);
+    search_coarse_pieces(scene, state);
+    join_free_pieces(scene, state);
     absorb_scraps(scene, state);
     unite_equal(scene, step, state);
 

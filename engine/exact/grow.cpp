@@ -1,7 +1,7 @@
 #include "exact/grow.h"
 
 #include "exact/face_fit.h"
-#include "surface/fit.h"
+#include "surface/constrained_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +38,17 @@ double gap_share(const Scene& scene, const FaceFitter& fitter, const Candidate& 
         }
     }
     return border > 0 ? creeping / border : 0;
+}
+
+surface::SurfaceFit refitted(const Surface& surface, std::span<const Vec3> points) {
+    const surface::PointSet set{points, {}, {}};
+    if (surface.type <= SurfaceType::torus) return surface::refine(surface, set);
+    surface::SurfaceFit fit = surface::fit_type(SurfaceType::quadric, set, surface.coefficients);
+    fit.ok = fit.ok && fit.surface.type > SurfaceType::torus && !points.empty();
+    if (fit.ok && dot(surface::normal_at(fit.surface, points[0]), surface::normal_at(surface, points[0])) < 0) {
+        for (double& c : fit.surface.coefficients) c = -c;
+    }
+    return fit;
 }
 
 }  // namespace
@@ -124,7 +135,7 @@ Candidate grow(const Scene& scene, const Surface& start, std::span<const std::ui
     candidate.faces = reach(scene, start, patch, largest_turn, marks);
     for (int refit = 0; refit < most_refits; ++refit) {
         const std::vector<Vec3> points = vertices_of(scene, candidate.faces, fit_sample, marks);
-        const surface::SurfaceFit fit = surface::refine(candidate.surface, {points, {}, {}}, {});
+        const surface::SurfaceFit fit = refitted(candidate.surface, points);
         if (!fit.ok) break;
         std::vector<std::uint32_t> faces = reach(scene, fit.surface, candidate.faces, largest_turn, marks);
         if (faces.size() < candidate.faces.size() * 9 / 10) break;

@@ -84,46 +84,6 @@ std::vector<PatchShape> rows_through(const Scene& scene, std::uint32_t seed) {
     return rows;
 }
 
-/// Half of the vertices on the surface to the last digit: no accident (those miss by 1e-7), whatever trim curves do to
-/// the border.
-bool at_precision(const Scene& scene, const Candidate& candidate) {
-    return candidate.median <= std::max(10 * scene.tolerances.precision, 1e-9 * scene.tolerances.diagonal);
-}
-
-struct PatchPoints {
-    std::vector<std::uint32_t> vertices;
-    std::vector<Vec3> points, face_normals, jet_normals;
-};
-
-PatchPoints patch_points(const Scene& scene, std::span<const std::uint32_t> faces, Marks& marks) {
-    PatchPoints p;
-    marks.clear();
-    Vec3 mean;
-    for (const std::uint32_t f : faces) {
-        mean += scene.mesh.normals[f] * scene.mesh.areas[f];
-        for (const std::uint32_t v : scene.mesh.faces[f]) {
-            if (marks.mark_vertex(v)) p.vertices.push_back(v);
-        }
-    }
-    std::vector<std::uint32_t> sorted = p.vertices;
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<Vec3> normals(sorted.size());
-    for (const std::uint32_t f : faces) {
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t v = scene.mesh.faces[f][static_cast<std::size_t>(k)];
-            const auto i = static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), v) - sorted.begin());
-            const Vec3 a = scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k);
-            const Vec3 b = scene.mesh.corner(f, (k + 2) % 3) - scene.mesh.corner(f, k);
-            normals[i] += scene.mesh.normals[f] * angle_between(a, b);
-        }
-    }
-    p.vertices = std::move(sorted);
-    for (const std::uint32_t v : p.vertices) p.points.push_back(scene.mesh.positions[v]);
-    for (const Vec3& n : normals) p.face_normals.push_back(normalized(n));
-    if (p.points.size() >= 9) p.jet_normals = surface::patch_normals(p.points, normalized(mean));
-    return p;
-}
-
 /// Vertices lie on the surface, except that those on trim curves may be off (PROTOTYPE: by 1e-6 to 2e-5 of the
 /// diagonal).
 bool holds(const Scene& scene, const surface::SurfaceFit& fit, const surface::PointSet& points, double tolerance) {
@@ -186,6 +146,39 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
 }
 
 }  // namespace
+
+bool at_precision(const Scene& scene, const Candidate& candidate) {
+    return candidate.median <= std::max(10 * scene.tolerances.precision, 1e-9 * scene.tolerances.diagonal);
+}
+
+PatchPoints patch_points(const Scene& scene, std::span<const std::uint32_t> faces, Marks& marks) {
+    PatchPoints p;
+    marks.clear();
+    Vec3 mean;
+    for (const std::uint32_t f : faces) {
+        mean += scene.mesh.normals[f] * scene.mesh.areas[f];
+        for (const std::uint32_t v : scene.mesh.faces[f]) {
+            if (marks.mark_vertex(v)) p.vertices.push_back(v);
+        }
+    }
+    std::vector<std::uint32_t> sorted = p.vertices;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<Vec3> normals(sorted.size());
+    for (const std::uint32_t f : faces) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t v = scene.mesh.faces[f][static_cast<std::size_t>(k)];
+            const auto i = static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), v) - sorted.begin());
+            const Vec3 a = scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k);
+            const Vec3 b = scene.mesh.corner(f, (k + 2) % 3) - scene.mesh.corner(f, k);
+            normals[i] += scene.mesh.normals[f] * angle_between(a, b);
+        }
+    }
+    p.vertices = std::move(sorted);
+    for (const std::uint32_t v : p.vertices) p.points.push_back(scene.mesh.positions[v]);
+    for (const Vec3& n : normals) p.face_normals.push_back(normalized(n));
+    if (p.points.size() >= 9) p.jet_normals = surface::patch_normals(p.points, normalized(mean));
+    return p;
+}
 
 Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, const PatchShape& shape,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks) {

@@ -32,6 +32,18 @@ struct PatchShape {
 Patch collect_patch(const Scene& scene, std::uint32_t seed, std::size_t facets, const PatchShape& shape,
                     const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
+/// Vertices of a patch, ascending, with normals there: means of the faces', and of a local polynomial where there are
+/// enough.
+struct PatchPoints {
+    std::vector<std::uint32_t> vertices;
+    std::vector<Vec3> points, face_normals, jet_normals;
+};
+PatchPoints patch_points(const Scene& scene, std::span<const std::uint32_t> faces, Marks& marks);
+
+/// Half of the vertices on the surface to the last digit: no accident (those miss by 1e-7), whatever trim curves do to
+/// the border.
+bool at_precision(const Scene& scene, const Candidate& candidate);
+
 /// The surface that explains a patch, if one does within the tolerance. `coarse`: facets turn far, face normals are
 /// worth a try.
 std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t> faces, double tolerance, bool coarse,

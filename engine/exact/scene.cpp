@@ -11,11 +11,11 @@ namespace quadseg::exact {
 namespace {
 
 /// Seed patches do not cross edges sharper than this; growing does, by its own scale.
-constexpr double crease_angle = 40 * std::numbers::pi / 180;
+constexpr double crease_degrees = 40;
 
-std::vector<std::uint8_t> find_creases(const mesh::WorkMesh& mesh) {
+std::vector<std::uint8_t> find_creases(const mesh::WorkMesh& mesh, double degrees) {
     std::vector<std::uint8_t> creases(mesh.face_count(), 0);
-    const double sharp = std::cos(crease_angle);
+    const double sharp = std::cos(degrees * std::numbers::pi / 180);
     runtime::parallel_for(creases.size(), 16384, [&](std::size_t f) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::int32_t g = mesh.neighbors[f][k];
@@ -31,6 +31,7 @@ std::vector<std::uint8_t> find_creases(const mesh::WorkMesh& mesh) {
 void find_charts(Scene& scene) {
     const mesh::WorkMesh& mesh = scene.mesh;
     scene.chart.assign(mesh.face_count(), -2);
+    scene.chart_count = 0;
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
         if (scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[f])].sure) scene.chart[f] = -1;
     }
@@ -92,11 +93,19 @@ double dihedral(const mesh::WorkMesh& mesh, std::size_t f, std::size_t g) {
     return angle_between(mesh.normals[f], mesh.normals[g]);
 }
 
+Scene with_creases(const Scene& scene, double degrees) {
+    Scene other = scene;
+    other.creases = find_creases(scene.mesh, degrees);
+    find_charts(other);
+    find_depths(other);
+    return other;
+}
+
 Scene build_scene(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
     Scene scene{mesh, control, choose_tolerances(mesh), {}, {}, {}, {}, 0, {}};
     scene.heights = face_heights(mesh);
     scene.facets = find_facets(mesh, scene.tolerances, scene.heights, control);
-    scene.creases = find_creases(mesh);
+    scene.creases = find_creases(mesh, crease_degrees);
     find_charts(scene);
     find_depths(scene);
     return scene;

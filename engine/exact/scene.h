@@ -27,6 +27,9 @@ struct Scene {
 
 Scene build_scene(const mesh::WorkMesh& mesh, const runtime::RunControl& control);
 
+/// The same with creases at another angle, degrees.
+Scene with_creases(const Scene& scene, double degrees);
+
 /// Angle between the normals of two faces, radians; 0 where one has none.
 double dihedral(const mesh::WorkMesh& mesh, std::size_t f, std::size_t g);
 

@@ -1,6 +1,7 @@
 #include "exact/search.h"
 
 #include "exact/hypothesis.h"
+#include "exact/quadric_hypothesis.h"
 #include "runtime/parallel.h"
 #include "runtime/per_thread.h"
 #include "runtime/run_control.h"
@@ -44,10 +45,14 @@ class ChartSearch {
             if (seeds.empty()) break;
             std::vector<Finding> found(seeds.size());
             runtime::parallel_for(seeds.size(), 1, [&](std::size_t i) {
-                found[i] = find_surface(
-                    scene_, seeds[i], options_,
-                    [&](std::uint32_t f) { return scene_.chart[f] != chart_ || covered_[f] != explained; },
-                    marks_.local());
+                const auto usable = [&](std::uint32_t f) {
+                    return scene_.chart[f] != chart_ || covered_[f] != explained;
+                };
+                if (options_.quadrics) {
+                    found[i].candidate = find_quadric(scene_, seeds[i], usable, marks_.local());
+                } else {
+                    found[i] = find_surface(scene_, seeds[i], options_, usable, marks_.local());
+                }
             });
             bool any = false;
             for (std::size_t i = 0; i < seeds.size(); ++i) {

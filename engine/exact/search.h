@@ -12,6 +12,7 @@ namespace quadseg::exact {
 struct SearchOptions {
     bool rows_only = false;  ///< only seeds in rows of long facets, and no discs around them
     bool loose = false;      ///< second pass, for parts whose edge curves are approximations
+    bool quadrics = false;   ///< only general quadrics
     double most_step = 10;   ///< candidates whose facets turn further are not taken, radians
 };
 

@@ -55,15 +55,9 @@ class ExactParts : public ::testing::TestWithParam<const char*> {};
 TEST_P(ExactParts, EveryTrueSurfaceIsFound) {
     const datasets::Generated part = datasets::generate(GetParam(), 12000);
     const Found found = run(part);
-    // General quadrics are left to the flow that groups what has no direct type.
-    const auto direct = std::count_if(part.surfaces.begin(), part.surfaces.end(), [](const datasets::TrueSurface& t) {
-        return t.surface.type <= SurfaceType::torus;
-    });
     EXPECT_GE(found.agreement, 0.999);
-    EXPECT_GE(found.surfaces.covered, 0.95);
-    // Fillets of two rows of facets, 48° apart, are beyond the crease angle of patches: the plate has four.
-    EXPECT_LE(found.regions, static_cast<std::size_t>(direct));
-    EXPECT_GE(found.regions + 4, static_cast<std::size_t>(direct));
+    EXPECT_GE(found.surfaces.covered, 0.999);
+    EXPECT_EQ(found.regions, part.surfaces.size());
 }
 
 TEST_P(ExactParts, TypesAndRadiiAreTheTrueOnes) {
@@ -88,7 +82,7 @@ TEST_P(ExactParts, TheSameAtAnyThreadCount) {
     for (const int threads : {2, 3}) EXPECT_EQ(one.labels, run(part, threads).labels);
 }
 
-INSTANTIATE_TEST_SUITE_P(Parts, ExactParts, ::testing::Values("plate", "shaft", "flange"),
+INSTANTIATE_TEST_SUITE_P(Parts, ExactParts, ::testing::Values("plate", "shaft", "flange", "fillets"),
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(ExactSurfaces, StopsWhenCancelled) {

@@ -52,13 +52,12 @@ TEST_P(Parts, AreTheirTrueSurfaces) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Generated, Parts,
-                         testing::Values(Part{"plate", 3000, 0.97, 7, 0.92, 7e-3}, Part{"shaft", 3000},
+                         testing::Values(Part{"plate", 3000, 0.998, 3, 0.97, 6e-3}, Part{"shaft", 3000},
                                          Part{"flange", 3000}, Part{"fillets", 3000}, Part{"rounded_octahedron", 3000},
-                                         Part{"quadrics", 8000, 0.97, 34, 0.99, 4e-3},
-                                         Part{"plate", 20000, 0.998, 2, 0.99, 1e-3}, Part{"shaft", 20000},
-                                         Part{"flange", 20000}, Part{"fillets", 20000},
+                                         Part{"quadrics", 8000, 0.998, 13, 0.998, 2e-4}, Part{"plate", 20000},
+                                         Part{"shaft", 20000}, Part{"flange", 20000}, Part{"fillets", 20000},
                                          Part{"rounded_octahedron", 20000},
-                                         Part{"quadrics", 20000, 0.98, 29, 0.99, 5e-3}));
+                                         Part{"quadrics", 20000, 0.998, 22, 0.998, 2.3e-3}));
 
 }  // namespace
 }  // namespace quadseg::test
