@@ -142,10 +142,11 @@ void make_plate(Builder& builder, Pcg random) {
         t.cone_tip(drill, -0.45 * height, -0.45 * height - 0.6 * drill);
         t.line_to(drill, 0);
     });
+    // √(1 + 0.6²), written out: gcc rounds a constant std::hypot otherwise than the library that others call does.
+    constexpr double slant = 1.1661903789690602;
     const double dimple = vary(2);
     for (const std::size_t where : {at(1, 2), at(2, 0)}) {  // spherical dimples below
-        holes.bottom[where] =
-            turned([=](Turning& t) { t.sphere_cap(dimple, 0.6 * dimple, -std::hypot(1, 0.6) * dimple, false); });
+        holes.bottom[where] = turned([=](Turning& t) { t.sphere_cap(dimple, 0.6 * dimple, -slant * dimple, false); });
     }
     build_body(builder, shape, holes.top, holes.bottom);
 }
