@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <memory>
 
 namespace quadseg::mesh::build {
 
@@ -22,7 +23,8 @@ struct HalfEdge {
 class Chains {
   public:
     Chains(const WorkMesh& mesh, const runtime::RunControl& control)
-        : head_(mesh.vertex_count(), end_of_chain), next_(3 * mesh.face_count()) {
+        : head_(mesh.vertex_count(), end_of_chain),
+          next_(std::make_unique_for_overwrite<std::uint32_t[]>(3 * mesh.face_count())) {
         const bool alone = runtime::arena_threads() <= 1;
         runtime::parallel_blocks(mesh.face_count(), block, [&](std::size_t begin, std::size_t end) {
             control.check();
@@ -66,7 +68,8 @@ class Chains {
     }
 
   private:
-    std::vector<std::uint32_t> head_, next_;
+    std::vector<std::uint32_t> head_;
+    std::unique_ptr<std::uint32_t[]> next_;  // not a vector: all threads touch it first
 };
 
 std::uint32_t opposite_vertex(const WorkMesh& mesh, std::uint32_t id) noexcept {

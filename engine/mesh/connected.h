@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace quadseg::mesh {
 /// at once (a root is only ever linked to a smaller one).
 class SmallestRoot {
   public:
-    explicit SmallestRoot(std::size_t size) : parent_(size) {
+    explicit SmallestRoot(std::size_t size) : parent_(std::make_unique_for_overwrite<std::uint32_t[]>(size)) {
         runtime::parallel_for(size, 65536, [&](std::size_t i) { parent_[i] = static_cast<std::uint32_t>(i); });
     }
 
@@ -43,7 +44,7 @@ class SmallestRoot {
 
   private:
     std::atomic_ref<std::uint32_t> at(std::uint32_t i) noexcept { return std::atomic_ref<std::uint32_t>(parent_[i]); }
-    std::vector<std::uint32_t> parent_;
+    std::unique_ptr<std::uint32_t[]> parent_;  // not a vector: all threads touch it first
 };
 
 /// Sets of the wanted faces that edges connect across which together(f, k, g) holds; numbered by first face in `part`,

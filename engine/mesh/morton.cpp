@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 namespace quadseg::mesh::build {
 
@@ -30,6 +32,19 @@ std::uint64_t spread_bits(std::uint64_t x) noexcept {
 struct Keyed {
     std::uint64_t key;
     std::uint32_t face;
+};
+
+/// Not a vector: whoever fills a part touches its memory first, all threads at once.
+class KeyedFaces {
+  public:
+    explicit KeyedFaces(std::size_t size) : keyed_(std::make_unique_for_overwrite<Keyed[]>(size)), size_(size) {}
+    std::size_t size() const noexcept { return size_; }
+    Keyed& operator[](std::size_t i) noexcept { return keyed_[i]; }
+    const Keyed& operator[](std::size_t i) const noexcept { return keyed_[i]; }
+
+  private:
+    std::unique_ptr<Keyed[]> keyed_;
+    std::size_t size_;
 };
 
 const double* position(const MeshView& input, std::uint32_t v) noexcept {
@@ -63,7 +78,7 @@ std::uint64_t key_of(const MeshView& input, const std::uint32_t* t, const UnitFr
 }
 
 /// Keys of the faces with three different vertices, in face order.
-std::vector<Keyed> face_keys(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
+KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
     const auto collapsed = [&](std::size_t f) { return has_repeated_index(&input.triangles[3 * f]); };
     std::vector<std::size_t> block_begin((input.face_count() + block - 1) / block);
     runtime::parallel_blocks(input.face_count(), block, [&](std::size_t begin, std::size_t end) {
@@ -72,7 +87,7 @@ std::vector<Keyed> face_keys(const MeshView& input, const UnitFrame& frame, cons
         for (std::size_t f = begin; f < end; ++f) count += collapsed(f) ? 0 : 1;
         block_begin[begin / block] = count;
     });
-    std::vector<Keyed> keyed(runtime::exclusive_scan(block_begin));
+    KeyedFaces keyed(runtime::exclusive_scan(block_begin));
     runtime::parallel_blocks(input.face_count(), block, [&](std::size_t begin, std::size_t end) {
         control.check();
         std::size_t next = block_begin[begin / block];
@@ -85,7 +100,7 @@ std::vector<Keyed> face_keys(const MeshView& input, const UnitFrame& frame, cons
 }
 
 /// One stable pass of the radix sort. The result of a stable sort is unique, whatever the parts.
-void radix_pass(const std::vector<Keyed>& from, std::vector<Keyed>& to, int shift, const runtime::RunControl& control) {
+void radix_pass(const KeyedFaces& from, KeyedFaces& to, int shift, const runtime::RunControl& control) {
     const auto threads = static_cast<std::size_t>(std::clamp(runtime::arena_threads(), 1, 64));
     const std::size_t part = std::max<std::size_t>((from.size() + threads - 1) / threads, block);
     const std::size_t parts = (from.size() + part - 1) / part;
@@ -114,21 +129,20 @@ void radix_pass(const std::vector<Keyed>& from, std::vector<Keyed>& to, int shif
 }
 
 /// Sorts the runs of equal high bits in [begin, end), which holds whole runs.
-void sort_runs(const MeshView& input, std::vector<Keyed>& keyed, std::size_t begin, std::size_t end) {
+void sort_runs(const MeshView& input, KeyedFaces& keyed, std::size_t begin, std::size_t end) {
     const auto less = [&](const Keyed& a, const Keyed& b) {
         return a.key != b.key ? a.key < b.key : before_at_same_key(input, a.face, b.face);
     };
     for (std::size_t i = begin, j = begin; i < end; i = j) {
         while (j < end && keyed[j].key >> low_bits == keyed[i].key >> low_bits) ++j;
         if (j - i > 1) {
-            runtime::parallel_sort(keyed.begin() + static_cast<std::ptrdiff_t>(i),
-                                   keyed.begin() + static_cast<std::ptrdiff_t>(j), less);
+            runtime::parallel_sort(&keyed[i], &keyed[i] + (j - i), less);
         }
     }
 }
 
 /// Begins of blocks of about `block` faces that cut no run of equal high bits; the end is the last entry.
-std::vector<std::size_t> whole_run_blocks(const std::vector<Keyed>& keyed) {
+std::vector<std::size_t> whole_run_blocks(const KeyedFaces& keyed) {
     std::vector<std::size_t> begins{0};
     while (begins.back() < keyed.size()) {
         std::size_t i = std::min(begins.back() + block, keyed.size());
@@ -142,12 +156,12 @@ std::vector<std::size_t> whole_run_blocks(const std::vector<Keyed>& keyed) {
 
 std::vector<std::uint32_t> morton_order(const MeshView& input, const UnitFrame& frame,
                                         const runtime::RunControl& control) {
-    std::vector<Keyed> keyed = face_keys(input, frame, control);
+    KeyedFaces keyed = face_keys(input, frame, control);
     {
-        std::vector<Keyed> other(keyed.size());
+        KeyedFaces other(keyed.size());
         for (int pass = 0; pass < passes; ++pass) {
             radix_pass(keyed, other, low_bits + pass * digit_bits, control);
-            keyed.swap(other);
+            std::swap(keyed, other);
         }
     }
     const std::vector<std::size_t> begins = whole_run_blocks(keyed);
