@@ -24,6 +24,7 @@ namespace {
 /// Turn of a facet, radians: bounds of what curved surfaces tell, and what is assumed where there are none to tell.
 constexpr double least_step = 0.13, most_step = 0.9, unknown_step = 0.7;
 constexpr double suspicious_turn = 1.7;
+constexpr double clearly_looser = 3;
 
 /// Sure facets, largest first, grown to planes; a facet inside an earlier plane is none of its own.
 std::vector<Candidate> plane_candidates(const Scene& scene) {
@@ -96,7 +97,10 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     ask_again(scene, step, candidates);
     selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);
-    append(candidates, search_surfaces(scene, {.loose = true}, covered));
+    // Rounded coordinates make the first pass loose already: a second one would lay tori through free-form faces.
+    if (scene.tolerances.loose_fit > clearly_looser * scene.tolerances.fit) {
+        append(candidates, search_surfaces(scene, {.loose = true}, covered));
+    }
     scene.control.check();
     selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);
