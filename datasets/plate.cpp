@@ -3,6 +3,9 @@
 #include "datasets/shapes.h"
 #include "datasets/turning.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace quadseg::datasets {
 namespace {
 
@@ -117,7 +120,7 @@ void make_plate(Builder& builder, Pcg random) {
         t.line_to(frustum, 0);
     });
     const double dome = vary(3.6);
-    const double dome_edge = vary(3);
+    const double dome_edge = std::min(vary(3), dome);  // at most half a sphere
     holes.top[at(2, 0)] = turned(
         [=](Turning& t) { t.sphere_cap(dome_edge, -std::sqrt(dome * dome - dome_edge * dome_edge), dome, true); });
     // Drawn one by one: compilers evaluate the arguments of a call in different orders.
