@@ -41,6 +41,7 @@ std::unique_ptr<Adapter> make_ours();
 std::unique_ptr<Adapter> make_ours_automatic();
 std::unique_ptr<Adapter> make_ours_paper();
 std::unique_ptr<Adapter> make_vsa_l21();
+std::unique_ptr<Adapter> make_vsa_l21_as_documented();
 std::unique_ptr<Adapter> make_vsa_l2();
 std::unique_ptr<Adapter> make_vsa_quadric();
 std::unique_ptr<Adapter> make_vsa_quadric_incremental();

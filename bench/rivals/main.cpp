@@ -24,6 +24,7 @@ std::vector<Rival> rivals() {
             {"ours, number of regions found", {false, true, false}, make_ours_automatic},
             {"ours, paper preset", {true, true, true}, make_ours_paper},
             {"CGAL VSA L21", {true, true, false}, make_vsa_l21},
+            {"CGAL VSA L21, iterations of the manual", {true, true, false}, make_vsa_l21_as_documented},
             {"CGAL VSA L2", {true, true, false}, make_vsa_l2},
             {"CGAL VSA quadric", {true, true, false}, make_vsa_quadric},
             {"CGAL VSA quadric, incremental", {true, true, true}, make_vsa_quadric_incremental},
