@@ -18,12 +18,23 @@ constexpr double freeform_misfit_angle = 14;
 /// Curvature counts as known where at most this share of the edges shows a jump that could be a border: on CAD meshes
 /// 1 to 19 %, on organic and simplified ones 21 to 40 %.
 constexpr double most_jumps = 0.2;
+/// Nor is it known along slivers, whose discs reach far one way and nowhere the other.
+constexpr double most_slivers = 0.3;
 /// A small smooth part has too few edges to tell by itself: so many edges of all the others speak along.
 constexpr double prior_edges = 200;
 
-struct Jumps {
+struct Evidence {
     double edges = 0, large = 0;
+    double faces = 0, slivers = 0;
 };
+
+/// Longer than three times its height.
+bool is_sliver(const mesh::WorkMesh& mesh, std::uint32_t f) {
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+        longest = std::max(longest, squared_norm(mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k)));
+    return longest > 3 * 2 * mesh.areas[f];
+}
 
 /// Faces of smooth parts whose curvature is known.
 std::vector<std::uint8_t> find_regular(const mesh::WorkMesh& mesh, const mesh::FeatureEdges& creases,
@@ -33,12 +44,14 @@ std::vector<std::uint8_t> find_regular(const mesh::WorkMesh& mesh, const mesh::F
         mesh, [&](std::size_t f) { return field.slot[f] >= 0; },
         [&](std::size_t f, std::size_t k, std::size_t) { return (creases[f] >> k & 1) == 0; }, [&] { control.check(); },
         part);
-    std::vector<Jumps> jumps(parts);
-    Jumps all;
+    std::vector<Evidence> evidence(parts);
+    Evidence all;
     std::size_t polls = 0;
     for (const std::uint32_t f : field.face) {
         control.check_often(polls);
-        Jumps& here = jumps[static_cast<std::size_t>(part[f])];
+        Evidence& here = evidence[static_cast<std::size_t>(part[f])];
+        here.faces += 1;
+        here.slivers += is_sliver(mesh, f) ? 1 : 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::int32_t g = mesh.neighbors[f][k];
             if (g <= static_cast<std::int32_t>(f) || part[static_cast<std::size_t>(g)] != part[f]) continue;
@@ -53,9 +66,9 @@ std::vector<std::uint8_t> find_regular(const mesh::WorkMesh& mesh, const mesh::F
     const double overall = all.edges > 0 ? all.large / all.edges : 0;
     std::vector<std::uint8_t> regular(mesh.face_count(), 0);
     for (const std::uint32_t f : field.face) {
-        const Jumps& here = jumps[static_cast<std::size_t>(part[f])];
+        const Evidence& here = evidence[static_cast<std::size_t>(part[f])];
         const double share = (here.large + prior_edges * overall) / (here.edges + prior_edges);
-        regular[f] = share <= most_jumps ? 1 : 0;
+        regular[f] = share <= most_jumps && here.slivers <= most_slivers * here.faces ? 1 : 0;
     }
     return regular;
 }
