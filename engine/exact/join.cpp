@@ -31,9 +31,32 @@ std::vector<std::int32_t> neighbours_of(const Scene& scene, const std::vector<st
     return {found.begin(), found.end()};
 }
 
+/// Two rims lie on a sphere and on many tori, whatever is between them: a vertex inside tells.
+bool has_inner_vertex(const Scene& scene, const Candidate& candidate) {
+    std::vector<std::uint32_t> rim;
+    for (const std::uint32_t f : candidate.faces) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::int32_t g = scene.mesh.neighbors[f][k];
+            const bool inside = g >= 0 && std::binary_search(candidate.faces.begin(), candidate.faces.end(),
+                                                             static_cast<std::uint32_t>(g));
+            if (inside) continue;
+            rim.push_back(scene.mesh.faces[f][k]);
+            rim.push_back(scene.mesh.faces[f][(k + 1) % 3]);
+        }
+    }
+    std::sort(rim.begin(), rim.end());
+    return std::any_of(candidate.faces.begin(), candidate.faces.end(), [&](std::uint32_t f) {
+        return std::any_of(scene.mesh.faces[f].begin(), scene.mesh.faces[f].end(),
+                           [&](std::uint32_t v) { return !std::binary_search(rim.begin(), rim.end(), v); });
+    });
+}
+
 /// Gives a candidate its faces if nearly all of them are free and it holds to the last digit.
 bool claim(const Scene& scene, const Candidate& candidate, Explained& state) {
     if (candidate.surface.type == SurfaceType::plane || !at_precision(scene, candidate)) return false;
+    const bool needs_inside =
+        candidate.surface.type == SurfaceType::sphere || candidate.surface.type == SurfaceType::torus;
+    if (needs_inside && !has_inner_vertex(scene, candidate)) return false;
     std::vector<std::uint32_t> free;
     for (const std::uint32_t f : candidate.faces) {
         if (state.region[f] < 0) free.push_back(f);
