@@ -59,10 +59,12 @@ bool is_free(const Scene& scene, const Explained& state, std::size_t facet) {
     return true;
 }
 
-/// Fans of slivers close the ends of rows: their vertices turn far round the surface, but lie on it to the last digit.
+/// Fans of slivers close the ends of rows: their vertices turn far round the surface, and their normals with them, but
+/// lie on it to the last digit.
 bool is_exact_sliver(const Scene& scene, std::size_t f, const FaceFit& fit) {
+    constexpr double largest_tilt = 45 * std::numbers::pi / 180;
     const double height = static_cast<double>(scene.heights[f]);
-    return fit.distance <= scene.tolerances.fit && 2 * fit.angle <= fit.allowed &&
+    return fit.distance <= scene.tolerances.fit && fit.angle <= largest_tilt &&
            2 * scene.mesh.areas[f] > 5 * height * height;
 }
 
@@ -110,9 +112,8 @@ void extend_to_borders(const Scene& scene, double largest_step, Explained& state
             if (g < 0 || state.region[static_cast<std::size_t>(g)] >= 0) continue;
             const FaceFit fit = fitters[static_cast<std::size_t>(region)](static_cast<std::size_t>(g));
             const bool curved = state.surface[static_cast<std::size_t>(region)].type != SurfaceType::plane;
-            if (!fit.within(scene.tolerances.border)) continue;
-            if (curved && fit.step > 1.7 * largest_step && !is_exact_sliver(scene, static_cast<std::size_t>(g), fit))
-                continue;
+            const bool lies_on = fit.within(scene.tolerances.border) && !(curved && fit.step > 1.7 * largest_step);
+            if (!lies_on && !(curved && is_exact_sliver(scene, static_cast<std::size_t>(g), fit))) continue;
             offers.push({fit.distance, static_cast<std::uint32_t>(g), region});
         }
     };

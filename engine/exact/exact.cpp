@@ -121,6 +121,8 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     release_doubtful(scene, state);
     search_coarse_pieces(scene, state);
     join_free_pieces(scene, state);
+    absorb_exact_crumbs(scene, state);
+    extend_to_borders(scene, step, state);
     absorb_scraps(scene, state);
     unite_equal(scene, step, state);
 

@@ -178,7 +178,46 @@ bool explains(const Scene& scene, const Explained& state, std::int32_t region,
                        [&](std::uint32_t f) { return fitter.distance(f) <= scene.tolerances.border; });
 }
 
+/// All vertices of a piece lie on a surface to the last digit, and its faces along it as far as slivers can.
+bool lies_exactly_on(const Scene& scene, const Surface& surface, const std::vector<std::uint32_t>& piece) {
+    constexpr double largest_tilt = 45 * std::numbers::pi / 180;
+    const FaceFitter fitter(scene, surface);
+    return std::all_of(piece.begin(), piece.end(), [&](std::uint32_t f) {
+        const FaceFit fit = fitter(f);
+        return fit.distance <= scene.tolerances.fit && fit.angle <= largest_tilt;
+    });
+}
+
 }  // namespace
+
+void absorb_exact_crumbs(const Scene& scene, Explained& state) {
+    constexpr int passes = 3;
+    constexpr std::size_t largest_crumb = 24, host_to_crumb = 4;
+    for (int pass = 0; pass < passes; ++pass) {
+        const std::vector<std::vector<std::uint32_t>> regions = faces_of_regions(state);
+        bool any = false;
+        for (std::size_t r = 0; r < regions.size(); ++r) {
+            scene.control.check();
+            const std::vector<std::uint32_t>& piece = regions[r];
+            // A flat whose corners lie on a cylinder is a flat.
+            if (piece.empty() || piece.size() > largest_crumb || state.surface[r].type == SurfaceType::plane) continue;
+            std::vector<Host> hosts = hosts_of(scene, state, piece);
+            std::stable_sort(hosts.begin(), hosts.end(),
+                             [](const Host& a, const Host& b) { return a.share > b.share; });
+            for (const Host& host : hosts) {
+                const auto h = static_cast<std::size_t>(host.region);
+                const bool larger = regions[h].size() >= host_to_crumb * piece.size();
+                if (h == r || !larger || state.surface[h].type == SurfaceType::plane) continue;
+                if (!lies_exactly_on(scene, state.surface[h], piece)) continue;
+                for (const std::uint32_t f : piece) state.region[f] = host.region;
+                any = true;
+                break;
+            }
+        }
+        if (!any) break;
+    }
+    separate_parts(scene, state);
+}
 
 void unite_equal(const Scene& scene, double largest_step, Explained& state) {
     Uniter(scene, largest_step, state).run();
