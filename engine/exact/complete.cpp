@@ -81,6 +81,7 @@ void add_planes(const Scene& scene, double largest_step, Explained& state) {
     for (const std::size_t facet : planes) claim_facet(scene, state, facet);
     for (const auto& component : free_components(scene, state, false)) {
         std::vector<std::int32_t> facets;
+        facets.reserve(component.size());
         for (const std::uint32_t f : component) facets.push_back(scene.facets.of_face[f]);
         std::sort(facets.begin(), facets.end());
         facets.erase(std::unique(facets.begin(), facets.end()), facets.end());

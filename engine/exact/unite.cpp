@@ -45,6 +45,7 @@ std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
         }
     }
     std::vector<Border> list;
+    list.reserve(borders.size());
     for (const auto& [key, border] : borders) list.push_back(border);
     return list;
 }
