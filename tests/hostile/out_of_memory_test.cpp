@@ -1,13 +1,7 @@
 // Every allocation of small jobs fails once: std::bad_alloc, nothing lost, and the next job is as good as ever.
 // Allocations inside TBB's own library are not reached by this.
-// ThreadSanitizer under clang has operators new and delete of its own that cannot be replaced.
-#if defined(__SANITIZE_THREAD__)
-#define QUADSEG_THREAD_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define QUADSEG_THREAD_SANITIZER
-#endif
-#endif
+#include "tests/hostile/failing_allocations.h"
+
 #ifndef QUADSEG_THREAD_SANITIZER
 
 #include <quadseg/error.h>
@@ -17,71 +11,8 @@
 #include "tests/golden/shapes.h"
 #include "tests/pipeline/result_checks.h"
 
-#include <atomic>
-#include <cstdlib>
 #include <functional>
 #include <gtest/gtest.h>
-#include <new>
-
-namespace {
-
-std::atomic<long> allocations{0}, failing{-1}, live{0};
-
-void* allocate(std::size_t size, std::size_t alignment) {
-    const long number = allocations.fetch_add(1), from = failing.load();
-    void* memory = nullptr;
-    if (from < 0 || number < from) {
-        memory = alignment == 0 ? std::malloc(size > 0 ? size : 1)
-                                : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-    }
-    if (!memory) throw std::bad_alloc();
-    live.fetch_add(1);
-    return memory;
-}
-
-void release(void* memory) noexcept {
-    if (memory) live.fetch_sub(1);
-    std::free(memory);
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-    return allocate(size, 0);
-}
-void* operator new[](std::size_t size) {
-    return allocate(size, 0);
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    return allocate(size, static_cast<std::size_t>(alignment));
-}
-void* operator new[](std::size_t size, std::align_val_t alignment) {
-    return allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept {
-    release(memory);
-}
-void operator delete[](void* memory) noexcept {
-    release(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    release(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-    release(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-    release(memory);
-}
-void operator delete[](void* memory, std::align_val_t) noexcept {
-    release(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    release(memory);
-}
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-    release(memory);
-}
 
 namespace quadseg::test {
 namespace {
