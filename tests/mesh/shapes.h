@@ -23,7 +23,7 @@ struct Shape {
 
     MeshView view() const { return {positions, triangles, polygons}; }
     std::uint32_t vertex(double x, double y, double z) {
-        positions.insert(positions.end(), {x, y, z});
+        for (const double c : {x, y, z}) positions.push_back(c);
         return static_cast<std::uint32_t>(positions.size() / 3 - 1);
     }
     void face(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles.insert(triangles.end(), {a, b, c}); }

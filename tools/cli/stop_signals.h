@@ -5,7 +5,7 @@
 
 namespace quadseg::cli {
 
-/// While it lives, the first SIGINT or SIGTERM cancels the context; a second one ends the program at once.
+/// While it lives, the first SIGINT or SIGTERM cancels the context; one more than .2 s later ends the program at once.
 class StopSignals {
   public:
     explicit StopSignals(Context& context);
