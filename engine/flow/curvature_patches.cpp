@@ -103,8 +103,11 @@ class Merger {
         }
     }
 
-    std::uint32_t root(std::uint32_t patch) const {
-        while (merged_into_[patch] != patch) patch = merged_into_[patch];
+    std::uint32_t root(std::uint32_t patch) {
+        while (merged_into_[patch] != patch) {
+            merged_into_[patch] = merged_into_[merged_into_[patch]];
+            patch = merged_into_[patch];
+        }
         return patch;
     }
 

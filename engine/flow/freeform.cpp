@@ -73,9 +73,9 @@ std::vector<std::uint8_t> find_regular(const mesh::WorkMesh& mesh, const mesh::F
     return regular;
 }
 
-std::vector<std::uint8_t> faces_where(const partition::Labels& labels, const auto& wanted) {
-    std::vector<std::uint8_t> faces(labels.size());
-    for (std::size_t f = 0; f < labels.size(); ++f) faces[f] = wanted(f) ? 1 : 0;
+std::vector<std::uint8_t> faces_where(std::size_t count, const auto& wanted) {
+    std::vector<std::uint8_t> faces(count);
+    for (std::size_t f = 0; f < count; ++f) faces[f] = wanted(f) ? 1 : 0;
     return faces;
 }
 
@@ -89,7 +89,8 @@ FlowResult group_freeform(const FlowInput& input, const partition::Labels& expla
     rules.jump /= std::sqrt(input.options.detail);
     FlowResult result;
     {
-        const std::vector<std::uint8_t> free = faces_where(explained, [&](std::size_t f) { return explained[f] < 0; });
+        const std::vector<std::uint8_t> free =
+            faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0; });
         const CurvatureField field = estimate_curvatures(mesh, free, creases, input.control);
         const std::vector<std::uint8_t> regular = find_regular(mesh, creases, field, rules.jump, input.control);
         result.labels = curvature_patches(mesh, creases, field, regular, rules, input.control);
@@ -98,7 +99,7 @@ FlowResult group_freeform(const FlowInput& input, const partition::Labels& expla
         result.regions = std::max(result.regions, static_cast<std::size_t>(label + 1));
     }
     const std::vector<std::uint8_t> rest =
-        faces_where(explained, [&](std::size_t f) { return explained[f] < 0 && result.labels[f] < 0; });
+        faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0 && result.labels[f] < 0; });
     if (std::find(rest.begin(), rest.end(), 1) == rest.end()) return result;
 
     FastOptions options = fast_options(input.options);

@@ -11,8 +11,6 @@
 
 namespace quadseg::flow {
 
-namespace {}  // namespace
-
 FlowResult run_standard(const FlowInput& input) {
     // A wanted number or tolerance is an energy question; only the choice of their own makes surfaces the question.
     if (input.options.regions > 0 || input.options.tolerance > 0) return run_fast(input, fast_options(input.options));
