@@ -23,8 +23,7 @@ struct Explained {
 /// Makes every edge-connected part of a region a region of its own (same surface) and renumbers by first face.
 void separate_parts(const Scene& scene, Explained& state);
 
-/// Edge-connected sets of free faces, creases not crossed when `within_creases`. CSR-free: a list of lists, by first
-/// face.
+/// Edge-connected sets of free faces, creases not crossed when `within_creases`: by first face, faces ascending.
 std::vector<std::vector<std::uint32_t>> free_components(const Scene& scene, const Explained& state,
                                                         bool within_creases);
 
