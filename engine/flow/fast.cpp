@@ -43,6 +43,8 @@ constexpr std::size_t many_leaves = 64;
 /// Share of the energy that a step of the relaxation must have won for another one, where a number of regions is asked
 /// for.
 constexpr double last_gain = 5e-3;
+/// Likewise the share of a region's area that may change without another fit of its surface.
+constexpr double settled_share = 0.03;
 
 class FastFlow {
   public:
@@ -208,7 +210,10 @@ class FastFlow {
         partition::RelaxOptions options;
         options.moment_steps = fast_.moment_steps;
         options.steps = fast_.relax_steps;
-        if (fast_.regions > 0) options.stop = last_gain;
+        if (fast_.regions > 0) {
+            options.stop = last_gain;
+            options.settled = settled_share;
+        }
         options.fit.weight = weight_;
         options.fit.plane_tolerance_per_area = true;
         partition::Relaxed relaxed = partition::relax(passage_, labels_, std::move(regions_), options, control_);

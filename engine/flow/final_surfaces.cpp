@@ -28,6 +28,9 @@ constexpr std::size_t fit_faces = 16384;         ///< the default preset's quadr
 // Regions made by energy follow no surface exactly: a few vertices tell the type, a few steps the parameters.
 constexpr std::size_t energy_choice_points = 32, energy_refinement_points = 96;
 constexpr int choice_steps = 15, energy_choice_steps = 5, energy_refinement_steps = 6;
+constexpr int energy_hopeless_after = 3;
+/// Half of the values exceed the median, so that it is at most √2 times the RMS.
+constexpr double most_median_of_rms = 1.42;
 constexpr std::size_t kept_points = 24;
 /// RMS distance, in multiples of the better one, up to which a simpler type is not meaningfully worse.
 constexpr double equal_ratio = 1.5;
@@ -88,6 +91,7 @@ class TypeChoice {
     TypeChoice(const PointSet& p, const Surface& start, double floor, bool torus, bool settle_early, int steps)
         : p_(p), start_(start), floor_(floor), torus_(torus), settle_early_(settle_early) {
         options_.iterations = steps;
+        if (settle_early) options_.hopeless_after = energy_hopeless_after;
     }
 
     /// The simplest type that is not meaningfully worse than the best; ok is false where nothing can be fitted.
@@ -98,12 +102,14 @@ class TypeChoice {
         consider(own);
         // Types that stay far above what is reached already need no more than a few steps.
         for (const SurfaceType type : {SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone}) {
-            options_.hopeless = 2 * limit();
+            options_.hopeless = (settle_early_ ? 4 : 2) * limit();
+            options_.wanted = settle_early_ ? most_median_of_rms * limit() : 0;
             consider(surface::fit(type, p_, options_));
         }
+        options_.wanted = 0;
         // Where energy made the regions, a simple type that is nearer to the vertices than the quadric settles it.
         if (settle_early_ && best_rms() < own.rms) return chosen();
-        options_.hopeless = 2 * limit();
+        options_.hopeless = settle_early_ ? 2 * own.rms / exact_quadric_gain : 2 * limit();
         consider_general(own);
         // A torus is no quadric: it has to be meaningfully better than all of them.
         const double better = std::max(floor_, best_rms() / equal_ratio);
@@ -116,8 +122,10 @@ class TypeChoice {
 
     /// The same where the general quadric is known to fail: only a torus is left.
     SurfaceFit torus(double tolerance) {
-        options_.hopeless = 2 * tolerance;
-        return surface::fit(SurfaceType::torus, p_, options_);
+        surface::FitOptions options;  // with time: the start of a torus is a rough one
+        options.iterations = options_.iterations;
+        options.hopeless = 2 * tolerance;
+        return surface::fit(SurfaceType::torus, p_, options);
     }
 
   private:

@@ -72,27 +72,6 @@ class Chains {
     std::unique_ptr<std::uint32_t[]> next_;  // not a vector: all threads touch it first
 };
 
-std::uint32_t opposite_vertex(const WorkMesh& mesh, std::uint32_t id) noexcept {
-    return mesh.faces[id / 3][(id % 3 + 2) % 3];
-}
-
-void append_duplicates(const WorkMesh& mesh, const HalfEdge* group, std::size_t size, EdgeCounts& counts) {
-    // Edges of very many faces are rare, but must not cost their square.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> opposite(size);  // (vertex, input face)
-    for (std::size_t i = 0; i < size; ++i) {
-        opposite[i] = {opposite_vertex(mesh, group[i].id), mesh.input_face[group[i].id / 3]};
-    }
-    std::sort(opposite.begin(), opposite.end());
-    std::size_t first = 0;
-    for (std::size_t i = 1; i < size; ++i) {
-        if (opposite[i].first != opposite[first].first) {
-            first = i;
-        } else {
-            counts.duplicates.emplace_back(opposite[i].second, opposite[first].second);
-        }
-    }
-}
-
 void match_group(WorkMesh& mesh, const HalfEdge* group, std::size_t size, EdgeCounts& counts) {
     const auto slot = [&](std::uint32_t id) -> std::int32_t& { return mesh.neighbors[id / 3][id % 3]; };
     if (size == 2) {
@@ -101,7 +80,6 @@ void match_group(WorkMesh& mesh, const HalfEdge* group, std::size_t size, EdgeCo
         slot(b) = static_cast<std::int32_t>(a / 3);
         const bool same = mesh.faces[a / 3][a % 3] == mesh.faces[b / 3][b % 3];
         counts.same_direction += same ? 1 : 0;
-        if (opposite_vertex(mesh, a) == opposite_vertex(mesh, b)) append_duplicates(mesh, group, size, counts);
         return;
     }
     for (std::size_t i = 0; i < size; ++i) slot(group[i].id) = no_face;
@@ -109,15 +87,13 @@ void match_group(WorkMesh& mesh, const HalfEdge* group, std::size_t size, EdgeCo
         ++counts.border;
     } else {
         ++counts.non_manifold;
-        append_duplicates(mesh, group, size, counts);
     }
 }
 
-EdgeCounts join(EdgeCounts a, const EdgeCounts& b) {
+EdgeCounts join(EdgeCounts a, const EdgeCounts& b) noexcept {
     a.border += b.border;
     a.non_manifold += b.non_manifold;
     a.same_direction += b.same_direction;
-    a.duplicates.insert(a.duplicates.end(), b.duplicates.begin(), b.duplicates.end());
     return a;
 }
 
@@ -126,7 +102,7 @@ EdgeCounts join(EdgeCounts a, const EdgeCounts& b) {
 EdgeCounts match_edges(WorkMesh& mesh, const runtime::RunControl& control) {
     mesh.neighbors.resize(mesh.face_count());
     const Chains chains(mesh, control);
-    EdgeCounts counts = runtime::reduce_blocks(
+    return runtime::reduce_blocks(
         mesh.vertex_count(), block / 2, EdgeCounts{},
         [&](std::size_t begin, std::size_t end) {
             control.check();
@@ -142,10 +118,6 @@ EdgeCounts match_edges(WorkMesh& mesh, const runtime::RunControl& control) {
             return local;
         },
         join);
-    // Each duplicate was seen at each of its edges.
-    std::sort(counts.duplicates.begin(), counts.duplicates.end());
-    counts.duplicates.erase(std::unique(counts.duplicates.begin(), counts.duplicates.end()), counts.duplicates.end());
-    return counts;
 }
 
 std::size_t count_non_manifold_vertices(const WorkMesh& mesh, const runtime::RunControl& control) {

@@ -21,10 +21,16 @@ std::vector<std::uint8_t> check_input(const MeshView& input, const runtime::RunC
 void measure_box(const MeshView& input, const std::vector<std::uint8_t>& used, WorkMesh& mesh,
                  const runtime::RunControl& control);
 
-/// Input faces with three different vertices, in Morton order of their centroids. Ties are broken by position, then by
-/// index, so that the order hardly depends on that of the input.
-std::vector<std::uint32_t> morton_order(const MeshView& input, const UnitFrame& frame,
-                                        const runtime::RunControl& control);
+/// (face, kept face) for input faces with the same three vertices; the kept one comes first in the input.
+using Duplicates = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+struct FaceOrder {
+    std::vector<std::uint32_t> faces;
+    Duplicates duplicates;  ///< left out of it, by face
+};
+/// Input faces with three different vertices, each once, in Morton order of their centroids. Ties are broken by
+/// position, then by index, so that the order hardly depends on that of the input.
+FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control);
 
 /// Fills input_face, faces, input_vertex and positions, the latter still in input coordinates.
 void renumber(const MeshView& input, std::vector<std::uint32_t> order, WorkMesh& mesh,
@@ -33,8 +39,6 @@ void renumber(const MeshView& input, std::vector<std::uint32_t> order, WorkMesh&
 struct EdgeCounts {
     std::size_t border = 0, non_manifold = 0;
     std::size_t same_direction = 0;  ///< two-face edges whose faces disagree in orientation
-    /// (face, kept face) for faces with the same three vertices; the kept one comes first in the input.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> duplicates;
 };
 /// Fills neighbors by matching half-edges in buckets of their larger vertex.
 EdgeCounts match_edges(WorkMesh& mesh, const runtime::RunControl& control);
@@ -55,9 +59,9 @@ void stitch_borders(WorkMesh& mesh, const runtime::RunControl& control);
 /// Fills components and component_count.
 void find_components(WorkMesh& mesh, const runtime::RunControl& control);
 
-/// Fills label_source and polygon. `duplicates`: (input face, input face whose label it takes).
-void find_label_sources(const MeshView& input, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& duplicates,
-                        WorkMesh& mesh, const runtime::RunControl& control);
+/// Fills label_source and polygon. Duplicates take the label of the kept face.
+void find_label_sources(const MeshView& input, const Duplicates& duplicates, WorkMesh& mesh,
+                        const runtime::RunControl& control);
 
 /// Bit-equal positions, −0 taken as +0.
 inline Vec3 without_negative_zero(const Vec3& p) noexcept {

@@ -71,8 +71,8 @@ void label_collapsed(const MeshView& input, const std::vector<std::uint32_t>& co
 
 }  // namespace
 
-void find_label_sources(const MeshView& input, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& duplicates,
-                        WorkMesh& mesh, const runtime::RunControl& control) {
+void find_label_sources(const MeshView& input, const Duplicates& duplicates, WorkMesh& mesh,
+                        const runtime::RunControl& control) {
     mesh.label_source.assign(input.face_count(), no_face);
     runtime::parallel_blocks(mesh.face_count(), block, [&](std::size_t begin, std::size_t end) {
         control.check();

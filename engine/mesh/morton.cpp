@@ -4,6 +4,8 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -14,10 +16,21 @@ namespace {
 
 constexpr int bits_per_axis = 21;
 constexpr int key_bits = 3 * bits_per_axis;
-/// The radix sort goes down to cells of 2^-11 of the extent, about a face each at a million faces; what shares such a
-/// cell is sorted by comparison.
-constexpr int digit_bits = 11, passes = 3, low_bits = key_bits - passes * digit_bits;
-constexpr std::size_t digits = std::size_t{1} << digit_bits;
+
+/// The radix sort goes down to cells that hold about a face each (4^level cells of a surface); what shares such a cell
+/// is sorted by comparison. The order is the same whatever the digits.
+struct Digits {
+    int passes, bits;
+
+    explicit Digits(std::size_t faces) {
+        constexpr int spare = 2, most_bits = 13;
+        const int wanted = 3 * static_cast<int>(std::bit_width(faces)) / 2 + spare;
+        passes = std::clamp((wanted + most_bits - 1) / most_bits, 1, 3);
+        bits = std::min((wanted + passes - 1) / passes, most_bits);
+    }
+    std::size_t count() const noexcept { return std::size_t{1} << bits; }
+    int low_bits() const noexcept { return key_bits - passes * bits; }
+};
 
 /// abc → a00b00c, for 21 bits.
 std::uint64_t spread_bits(std::uint64_t x) noexcept {
@@ -63,8 +76,15 @@ bool before_at_same_key(const MeshView& input, std::uint32_t f, std::uint32_t g)
     return f < g;
 }
 
-std::uint64_t key_of(const MeshView& input, const std::uint32_t* t, const UnitFrame& frame) noexcept {
+std::array<std::uint32_t, 3> ascending(const std::uint32_t* t) noexcept {
+    const auto [low, high] = std::minmax(t[0], t[1]);
+    return {std::min(low, t[2]), std::max(low, std::min(high, t[2])), std::max(high, t[2])};
+}
+
+/// Of the three vertices in ascending order: faces with the same vertices have the same key to the last bit.
+std::uint64_t key_of(const MeshView& input, const std::uint32_t* corners, const UnitFrame& frame) noexcept {
     constexpr double cells = 1 << bits_per_axis;
+    const std::array<std::uint32_t, 3> t = ascending(corners);
     const double *a = position(input, t[0]), *b = position(input, t[1]), *c = position(input, t[2]);
     std::uint64_t key = 0;
     for (int i = 0; i < 3; ++i) {
@@ -100,11 +120,12 @@ KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, const runtim
 }
 
 /// One stable pass of the radix sort. The result of a stable sort is unique, whatever the parts.
-void radix_pass(const KeyedFaces& from, KeyedFaces& to, int shift, const runtime::RunControl& control) {
+void radix_pass(const KeyedFaces& from, KeyedFaces& to, int shift, std::size_t digits,
+                const runtime::RunControl& control) {
     const auto threads = static_cast<std::size_t>(std::clamp(runtime::arena_threads(), 1, 64));
     const std::size_t part = std::max<std::size_t>((from.size() + threads - 1) / threads, block);
     const std::size_t parts = (from.size() + part - 1) / part;
-    const auto digit = [shift](const Keyed& k) { return static_cast<std::size_t>(k.key >> shift) & (digits - 1); };
+    const auto digit = [=](const Keyed& k) { return static_cast<std::size_t>(k.key >> shift) & (digits - 1); };
     std::vector<std::uint32_t> next(parts * digits, 0);
     runtime::parallel_blocks(from.size(), part, [&](std::size_t begin, std::size_t end) {
         control.check();
@@ -129,7 +150,7 @@ void radix_pass(const KeyedFaces& from, KeyedFaces& to, int shift, const runtime
 }
 
 /// Sorts the runs of equal high bits in [begin, end), which holds whole runs.
-void sort_runs(const MeshView& input, KeyedFaces& keyed, std::size_t begin, std::size_t end) {
+void sort_runs(const MeshView& input, KeyedFaces& keyed, int low_bits, std::size_t begin, std::size_t end) {
     const auto less = [&](const Keyed& a, const Keyed& b) {
         return a.key != b.key ? a.key < b.key : before_at_same_key(input, a.face, b.face);
     };
@@ -142,7 +163,7 @@ void sort_runs(const MeshView& input, KeyedFaces& keyed, std::size_t begin, std:
 }
 
 /// Begins of blocks of about `block` faces that cut no run of equal high bits; the end is the last entry.
-std::vector<std::size_t> whole_run_blocks(const KeyedFaces& keyed) {
+std::vector<std::size_t> whole_run_blocks(const KeyedFaces& keyed, int low_bits) {
     std::vector<std::size_t> begins{0};
     while (begins.back() < keyed.size()) {
         std::size_t i = std::min(begins.back() + block, keyed.size());
@@ -152,25 +173,69 @@ std::vector<std::size_t> whole_run_blocks(const KeyedFaces& keyed) {
     return begins;
 }
 
+/// Duplicates among the faces of [begin, end), which have one key.
+void find_duplicates(const MeshView& input, const KeyedFaces& keyed, std::size_t begin, std::size_t end,
+                     Duplicates& duplicates) {
+    struct Face {
+        std::array<std::uint32_t, 3> vertices;
+        std::uint32_t face;
+    };
+    std::vector<Face> faces;
+    for (std::size_t i = begin; i < end; ++i) {
+        faces.push_back({ascending(&input.triangles[3 * std::size_t{keyed[i].face}]), keyed[i].face});
+    }
+    std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+        return a.vertices != b.vertices ? a.vertices < b.vertices : a.face < b.face;
+    });
+    for (std::size_t i = 1, first = 0; i < faces.size(); ++i) {
+        if (faces[i].vertices != faces[first].vertices) {
+            first = i;
+        } else {
+            duplicates.emplace_back(faces[i].face, faces[first].face);
+        }
+    }
+}
+
+Duplicates find_duplicates(const MeshView& input, const KeyedFaces& keyed, std::size_t begin, std::size_t end) {
+    Duplicates duplicates;
+    for (std::size_t i = begin, j = begin; i < end; i = j) {
+        while (j < end && keyed[j].key == keyed[i].key) ++j;
+        if (j - i > 1) find_duplicates(input, keyed, i, j, duplicates);
+    }
+    return duplicates;
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> morton_order(const MeshView& input, const UnitFrame& frame,
-                                        const runtime::RunControl& control) {
+FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
     KeyedFaces keyed = face_keys(input, frame, control);
+    const Digits digits(keyed.size());
     {
         KeyedFaces other(keyed.size());
-        for (int pass = 0; pass < passes; ++pass) {
-            radix_pass(keyed, other, low_bits + pass * digit_bits, control);
+        for (int pass = 0; pass < digits.passes; ++pass) {
+            radix_pass(keyed, other, digits.low_bits() + pass * digits.bits, digits.count(), control);
             std::swap(keyed, other);
         }
     }
-    const std::vector<std::size_t> begins = whole_run_blocks(keyed);
-    runtime::parallel_for(begins.size() - 1, 1, [&](std::size_t b) {
+    const std::vector<std::size_t> begins = whole_run_blocks(keyed, digits.low_bits());
+    std::vector<Duplicates> found(begins.size() - 1);
+    runtime::parallel_for(found.size(), 1, [&](std::size_t b) {
         control.check();
-        sort_runs(input, keyed, begins[b], begins[b + 1]);
+        sort_runs(input, keyed, digits.low_bits(), begins[b], begins[b + 1]);
+        found[b] = find_duplicates(input, keyed, begins[b], begins[b + 1]);
     });
-    std::vector<std::uint32_t> order(keyed.size());
-    runtime::parallel_for(order.size(), block, [&](std::size_t i) { order[i] = keyed[i].face; });
+    FaceOrder order;
+    for (const Duplicates& d : found) order.duplicates.insert(order.duplicates.end(), d.begin(), d.end());
+    std::sort(order.duplicates.begin(), order.duplicates.end());
+    order.faces.resize(keyed.size());
+    runtime::parallel_for(order.faces.size(), block, [&](std::size_t i) { order.faces[i] = keyed[i].face; });
+    if (!order.duplicates.empty()) {
+        const auto is_duplicate = [&](std::uint32_t f) {
+            const auto at = std::lower_bound(order.duplicates.begin(), order.duplicates.end(), std::pair{f, 0U});
+            return at != order.duplicates.end() && at->first == f;
+        };
+        std::erase_if(order.faces, is_duplicate);
+    }
     return order;
 }
 

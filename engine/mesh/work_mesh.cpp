@@ -5,42 +5,22 @@
 #include "mesh/build.h"
 #include "runtime/parallel.h"
 
-#include <algorithm>
-#include <iterator>
+#include <utility>
 
 namespace quadseg::mesh {
 
-namespace {
-
 using build::block;
-
-/// Takes the duplicates out of the order of faces.
-std::vector<std::uint32_t> without(const std::vector<std::uint32_t>& order, std::size_t input_faces,
-                                   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& duplicates) {
-    std::vector<std::uint8_t> dropped(input_faces, 0);
-    for (const auto& duplicate : duplicates) dropped[duplicate.first] = 1;
-    std::vector<std::uint32_t> rest;
-    rest.reserve(order.size());
-    std::copy_if(order.begin(), order.end(), std::back_inserter(rest), [&](std::uint32_t f) { return !dropped[f]; });
-    return rest;
-}
-
-}  // namespace
 
 WorkMesh build_work_mesh(const MeshView& input, const runtime::RunControl& control) {
     WorkMesh mesh;
     build::measure_box(input, build::check_input(input, control), mesh, control);
-    build::renumber(input, build::morton_order(input, mesh.frame, control), mesh, control);
+    build::FaceOrder order = build::morton_order(input, mesh.frame, control);
+    build::renumber(input, std::move(order.faces), mesh, control);
     if (mesh.face_count() == 0) throw Error(ErrorCode::empty_mesh, "no face has three different vertices");
-    mesh.report.degenerate_faces = input.face_count() - mesh.face_count();
+    mesh.report.degenerate_faces = input.face_count() - mesh.face_count() - order.duplicates.size();
 
-    build::EdgeCounts edges = build::match_edges(mesh, control);
-    const auto duplicates = std::move(edges.duplicates);
-    if (!duplicates.empty()) {
-        build::renumber(input, without(mesh.input_face, input.face_count(), duplicates), mesh, control);
-        edges = build::match_edges(mesh, control);
-    }
-    mesh.report.duplicate_faces = duplicates.size();
+    const build::EdgeCounts edges = build::match_edges(mesh, control);
+    mesh.report.duplicate_faces = order.duplicates.size();
     mesh.report.border_edges = edges.border;
     mesh.report.non_manifold_edges = edges.non_manifold;
 
@@ -50,7 +30,7 @@ WorkMesh build_work_mesh(const MeshView& input, const runtime::RunControl& contr
     if (edges.same_direction > 0) build::orient(mesh, control);
     if (edges.border > 0) build::stitch_borders(mesh, control);
     build::find_components(mesh, control);
-    build::find_label_sources(input, duplicates, mesh, control);
+    build::find_label_sources(input, order.duplicates, mesh, control);
 
     runtime::parallel_for(mesh.positions.size(), block,
                           [&](std::size_t v) { mesh.positions[v] = mesh.frame.to_unit(mesh.positions[v]); });

@@ -1,6 +1,7 @@
 #include "partition/relax.h"
 
 #include "partition/border_cut.h"
+#include "partition/face_choice.h"
 #include "quadric/ladder.h"
 #include "runtime/parallel.h"
 
@@ -19,8 +20,6 @@ constexpr std::size_t work_grain = 1024;
 constexpr std::size_t region_grain = 64;
 constexpr int most_sweeps = 200;
 constexpr std::int32_t orphan = -2;
-/// Energy densities below this differ by rounding only.
-constexpr double density_floor = 1e-15;
 /// Of |∇f|, which least squares with unit weights keep near 1 (MATH.md §3).
 constexpr double gradient_floor = 0.05;
 
@@ -36,6 +35,7 @@ class Relaxer {
           control_(control),
           moments_(std::move(regions)),
           dirty_(count_, 1),
+          stale_(count_, 0),
           stamp_(labels.size(), 0) {
         result_.fits.resize(count_);
     }
@@ -68,6 +68,7 @@ class Relaxer {
     void iterate(int steps, Labels& best, const Refit& refit_dirty) {
         refit_dirty();
         Relaxed kept = result_;
+        std::vector<std::uint8_t> kept_stale = stale_;
         for (int step = 0; step < steps; ++step) {
             const double before = kept.energy;
             if (!move_faces()) break;
@@ -76,47 +77,58 @@ class Relaxer {
             if (!(result_.energy < before)) break;
             best = labels_;
             kept = result_;
+            kept_stale = stale_;
             if (!(result_.energy < (1 - options_.stop) * before)) break;
         }
         labels_ = best;
         result_ = std::move(kept);
+        fit_stale(kept_stale);
     }
 
+    quadric::TriangleEnergy energies(std::size_t f, const quadric::Proxy& proxy) const noexcept {
+        return quadric::triangle_energy(proxy, mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2),
+                                        mesh_.normals[f], mesh_.areas[f]);
+    }
     double energy(std::size_t f, std::int32_t label) const noexcept {
-        return quadric::triangle_energy(result_.fits[static_cast<std::size_t>(label)].proxy, mesh_.corner(f, 0),
-                                        mesh_.corner(f, 1), mesh_.corner(f, 2), mesh_.normals[f], mesh_.areas[f])
-            .hybrid(options_.fit.weight);
+        return energies(f, result_.fits[static_cast<std::size_t>(label)].proxy).hybrid(options_.fit.weight);
     }
     std::int32_t label_across(std::size_t f, std::size_t k) const noexcept {
         const std::int32_t g = passage_.across(f, k);
         return g < 0 ? -1 : labels_[static_cast<std::size_t>(g)];
     }
 
-    /// Brings the moments of the regions up to date, face by face that changed.
-    void update_moments() {
-        struct Change {
-            std::int32_t region;
-            std::uint32_t face;
-            double sign;
-        };
-        std::vector<Change> changes;
+    struct Change {
+        std::int32_t region;
+        std::uint32_t face;
+        double sign;  ///< +1: the face joined the region, −1: it left
+    };
+
+    /// What changed since the last call, by region, then face.
+    std::vector<Change> changes() {
+        std::vector<Change> result;
         for (std::size_t f = 0; f < labels_.size(); ++f) {
             if (labels_[f] == fitted_labels_[f]) continue;
-            changes.push_back({fitted_labels_[f], static_cast<std::uint32_t>(f), -1});
-            changes.push_back({labels_[f], static_cast<std::uint32_t>(f), 1});
+            result.push_back({fitted_labels_[f], static_cast<std::uint32_t>(f), -1});
+            result.push_back({labels_[f], static_cast<std::uint32_t>(f), 1});
             fitted_labels_[f] = labels_[f];
         }
-        std::sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+        std::sort(result.begin(), result.end(), [](const Change& a, const Change& b) {
             return a.region != b.region ? a.region < b.region : a.face < b.face;
         });
-        const auto first_of = [&](std::size_t r) {
-            return std::lower_bound(changes.begin(), changes.end(), r, [](const Change& c, std::size_t region) {
-                return static_cast<std::size_t>(c.region) < region;
-            });
-        };
+        return result;
+    }
+
+    static auto first_of(const std::vector<Change>& changes, std::size_t r) {
+        return std::lower_bound(changes.begin(), changes.end(), r, [](const Change& c, std::size_t region) {
+            return static_cast<std::size_t>(c.region) < region;
+        });
+    }
+
+    /// Brings the moments of the regions up to date, face by face that changed.
+    void update_moments(const std::vector<Change>& changes) {
         runtime::parallel_blocks(count_, region_grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
-            for (auto change = first_of(begin), last = first_of(end); change != last; ++change) {
+            for (auto change = first_of(changes, begin), last = first_of(changes, end); change != last; ++change) {
                 MergeRegion& region = moments_[static_cast<std::size_t>(change->region)];
                 const std::size_t f = change->face;
                 quadric::accumulate(region.moments, mesh_.corner(f, 0) - region.origin,
@@ -126,8 +138,39 @@ class Relaxer {
         });
     }
 
+    /// A region that hardly changed keeps its surface: E is additive, so its faces' energies come and go. False: it
+    /// changed by more than options.settled of its area.
+    bool keep_surface(std::size_t r, const std::vector<Change>& changes) {
+        const auto begin = first_of(changes, r), end = first_of(changes, r + 1);
+        if (begin == end) return true;
+        double moved = 0;
+        for (auto change = begin; change != end; ++change) moved += mesh_.areas[change->face];
+        if (!(moved <= options_.settled * moments_[r].moments.total_area)) return false;
+        quadric::RegionFit& fit = result_.fits[r];
+        for (auto change = begin; change != end; ++change) {
+            const quadric::TriangleEnergy e = energies(change->face, fit.proxy);
+            fit.energy.distance = std::max(0.0, fit.energy.distance + change->sign * e.distance);
+            fit.energy.normal = std::max(0.0, fit.energy.normal + change->sign * e.normal);
+        }
+        fit.total = fit.energy.hybrid(options_.fit.weight);
+        stale_[r] = 1;
+        return true;
+    }
+
+    /// In the end those that kept their surface so get the one of their faces.
+    void fit_stale(const std::vector<std::uint8_t>& stale) {
+        std::vector<std::uint32_t> work;
+        for (std::uint32_t r = 0; r < count_; ++r) {
+            if (stale[r] != 0) work.push_back(r);
+        }
+        if (work.empty()) return;
+        regions_ = region_faces(labels_, count_);
+        fit_completely(work, false);
+        sum_energy();
+    }
+
     void refit_from_moments() {
-        update_moments();
+        update_moments(changes());
         runtime::parallel_blocks(count_, region_grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
             for (std::size_t r = begin; r < end; ++r) {
@@ -166,18 +209,13 @@ class Relaxer {
         return {fit.c, fit.energy};
     }
 
-    double edge_length(std::size_t f, std::size_t k) const noexcept {
-        const auto& v = mesh_.faces[f];
-        return norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]]);
-    }
-
     double border_length() const {
         const auto of_faces = [&](std::size_t begin, std::size_t end) {
             double sum = 0;
             for (std::size_t f = begin; f < end; ++f) {
                 for (std::size_t k = 0; k < 3; ++k) {
                     const std::int32_t other = label_across(f, k);
-                    if (other > labels_[f] && labels_[f] >= 0) sum += edge_length(f, k);
+                    if (other > labels_[f] && labels_[f] >= 0) sum += edge_length(mesh_, f, k);
                 }
             }
             return sum;
@@ -190,31 +228,46 @@ class Relaxer {
         for (const quadric::RegionFit& fit : result_.fits) result_.energy += fit.total;
     }
 
-    /// Complete fits of the dirty regions.
+    /// Complete fits of the dirty regions; what keeps its surface is dirty no more.
     void refit() {
         regions_ = region_faces(labels_, count_);
+        const bool moments_known = options_.moment_steps > 0;
+        if (moments_known) {
+            const std::vector<Change> changed = changes();
+            update_moments(changed);
+            if (complete_ && options_.settled > 0) {
+                runtime::parallel_for(count_, region_grain, [&](std::size_t r) {
+                    if (dirty_[r] != 0 && regions_.size(r) > 0 && keep_surface(r, changed)) dirty_[r] = 0;
+                });
+            }
+        }
+        complete_ = true;
         std::vector<std::uint32_t> work;
         for (std::uint32_t r = 0; r < count_; ++r) {
             if (dirty_[r] != 0 && regions_.size(r) > 0) work.push_back(r);
         }
+        fit_completely(work, moments_known);
+        for (std::size_t r = 0; r < count_; ++r) {
+            if (regions_.size(r) == 0) result_.fits[r] = {};
+        }
+        sum_energy();
+    }
+
+    /// Of regions_, which are those of labels_.
+    void fit_completely(std::vector<std::uint32_t> work, bool moments_known) {
         // Largest first, so that one big region does not start last.
         std::sort(work.begin(), work.end(), [&](std::uint32_t a, std::uint32_t b) {
             return regions_.size(a) != regions_.size(b) ? regions_.size(a) > regions_.size(b) : a < b;
         });
-        const bool moments_known = options_.moment_steps > 0;
-        if (moments_known) update_moments();
         runtime::parallel_for(work.size(), 1, [&](std::size_t i) {
             control_.check();
             const std::size_t r = work[i];
+            stale_[r] = 0;
             if (moments_known && fit_plane_from_moments(r)) return;
             GatheredRegion gathered;
             gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
             result_.fits[r] = quadric::fit_region(gathered.soup(), options_.fit);
         });
-        for (std::size_t r = 0; r < count_; ++r) {
-            if (regions_.size(r) == 0) result_.fits[r] = {};
-        }
-        sum_energy();
     }
 
     std::vector<std::uint32_t> border_faces() const {
@@ -277,46 +330,6 @@ class Relaxer {
         return moved;
     }
 
-    struct Decision {
-        std::int32_t label;
-        double gain;
-    };
-
-    Decision decide(std::size_t f) const noexcept {
-        const std::int32_t own = labels_[f];
-        std::array<std::int32_t, 3> other{};
-        std::array<double, 3> price{};  // of border length, were the face to have the label
-        double own_price = 0;
-        bool at_border = false;
-        for (std::size_t k = 0; k < 3; ++k) {
-            other[k] = label_across(f, k);
-            at_border = at_border || (other[k] >= 0 && other[k] != own);
-        }
-        if (!at_border) return {own, 0};
-        if (options_.border_price > 0) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (other[k] < 0) continue;
-                const double edge = options_.border_price * edge_length(f, k);
-                if (other[k] != own) own_price += edge;
-                for (std::size_t j = 0; j < 3; ++j) {
-                    if (other[j] != other[k]) price[j] += edge;
-                }
-            }
-        }
-        const double own_energy = energy(f, own) + own_price;
-        Decision best{own, 0};
-        double lowest = own_energy * (1 - options_.margin) - density_floor * mesh_.areas[f];
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (other[k] < 0 || other[k] == own || other[k] == best.label) continue;
-            const double e = energy(f, other[k]) + price[k];
-            if (e < lowest || (e == lowest && best.label != own && other[k] < best.label)) {
-                lowest = e;
-                best = {other[k], own_energy - e};
-            }
-        }
-        return best;
-    }
-
     /// Sweeps over the border until no face gains. Without a price of borders E is a sum over faces and all may decide
     /// at once (Jacobi); with one, neighbours take turns: the larger gain first.
     bool move_faces() {
@@ -330,13 +343,15 @@ class Relaxer {
         if (!dirty_before.empty()) dirty_ = dirty_before;
         const bool take_turns = options_.border_price > 0;
         if (take_turns && gain_.empty()) gain_.assign(labels_.size(), 0);
-        std::vector<Decision> decided;
+        const FaceChooser chooser(passage_, labels_, result_.fits,
+                                  {options_.fit.weight, options_.border_price, options_.margin});
+        std::vector<FaceChoice> decided;
         bool moved = false;
         for (int sweep = 0; sweep < most_sweeps && !work.empty(); ++sweep) {
             decided.resize(work.size());
             runtime::parallel_blocks(work.size(), work_grain, [&](std::size_t begin, std::size_t end) {
                 control_.check();
-                for (std::size_t i = begin; i < end; ++i) decided[i] = decide(work[i]);
+                chooser.decide({&work[begin], end - begin}, &decided[begin]);
             });
             std::vector<std::uint32_t> waiting;
             if (take_turns) waiting = wait_for_neighbors(work, decided);
@@ -353,7 +368,7 @@ class Relaxer {
 
     /// Of two neighbours that both want to move the one with the smaller gain stays for this sweep.
     std::vector<std::uint32_t> wait_for_neighbors(const std::vector<std::uint32_t>& work,
-                                                  std::vector<Decision>& decided) {
+                                                  std::vector<FaceChoice>& decided) {
         for (std::size_t i = 0; i < work.size(); ++i) {
             gain_[work[i]] = decided[i].label != labels_[work[i]] ? decided[i].gain : 0;
         }
@@ -377,7 +392,7 @@ class Relaxer {
     }
 
     /// Moves the faces and returns those that the moves may concern.
-    std::vector<std::uint32_t> apply(const std::vector<std::uint32_t>& work, const std::vector<Decision>& decided) {
+    std::vector<std::uint32_t> apply(const std::vector<std::uint32_t>& work, const std::vector<FaceChoice>& decided) {
         std::vector<std::uint32_t> concerned;
         ++sweep_stamp_;
         const auto concern = [&](std::size_t f) {
@@ -510,10 +525,12 @@ class Relaxer {
     std::vector<MergeRegion> moments_;
     Labels fitted_labels_;  ///< those that the moments belong to
     std::vector<std::uint8_t> dirty_;
+    std::vector<std::uint8_t> stale_;  ///< faces came or went since the surface was fitted
     std::vector<std::uint32_t> stamp_;
     std::vector<double> gain_;  ///< of the faces that want to move, else 0
     std::uint32_t sweep_stamp_ = 0;
     RegionFaces regions_;
+    bool complete_ = false;  ///< the fits are complete ones, not those from moments
     Relaxed result_;
 };
 

@@ -25,6 +25,8 @@ struct RelaxOptions {
     int steps = 6;         ///< then steps with complete fits, each {move faces, repair connectivity, refit}; < 0: none
     double margin = 1e-4;  ///< a face moves when it gains more than this share of its energy
     double stop = 1e-3;    ///< ends when a step lowers the energy by less than this share
+    /// Complete steps after moment steps: a region of which at most this share of the area changed keeps its surface.
+    double settled = 0;
     quadric::RegionFitOptions fit;
     /// Price of border length: > 0 makes borders short (Potts model), as noise asks for.
     double border_price = 0;

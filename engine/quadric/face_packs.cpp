@@ -15,14 +15,6 @@ namespace {
 constexpr double floor_share = 0.05;        // of the median |∇f⁰(c_t)| (MATH.md §3)
 constexpr std::size_t median_sample = 512;  // faces, evenly spaced, that the median is taken of
 
-struct PackGradient {
-    Pack x, y, z;
-    PackGradient(const Coefficients& c, const Pack& px, const Pack& py, const Pack& pz) noexcept
-        : x(2 * c[4] * px + c[5] * py + c[6] * pz + c[1]),
-          y(c[5] * px + 2 * c[7] * py + c[8] * pz + c[2]),
-          z(c[6] * px + c[8] * py + 2 * c[9] * pz + c[3]) {}
-};
-
 void centroid(const FacePack& f, Pack* x) noexcept {
     for (std::size_t k = 0; k < 3; ++k) x[k] = (f.corners[k] + f.corners[k + 3] + f.corners[k + 6]) * (1.0 / 3);
 }
@@ -103,7 +95,7 @@ Candidate FacePacks::prepare(const Coefficients& c) {
     for (std::size_t p = 0; p < pack_count_; ++p) {
         Pack x[3], length;
         centroid(packs_[p], x);
-        const PackGradient g(c, x[0], x[1], x[2]);
+        const PackGradient g(c.data(), x[0], x[1], x[2]);
         square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
         mean_pack += packs_[p].area * length;
         for (std::size_t l = 0; l < lanes; ++l) lengths_[p * lanes + l] = length[l];
@@ -130,7 +122,7 @@ void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments
         centroid(f, x);
         triangle_moments(&f.corners[0], f.area, t);
         const auto add = [&](const Candidate& candidate, LaneMoments& sum) {
-            const PackGradient g(candidate.c, x[0], x[1], x[2]);
+            const PackGradient g(candidate.c.data(), x[0], x[1], x[2]);
             Pack length;
             square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
             maximum(length, Pack{} + candidate.gradient_floor, length);
@@ -156,39 +148,11 @@ void FacePacks::evaluate(Candidate& candidate) const {
     const Pack floor = Pack{} + candidate.gradient_floor;
     Pack distance{}, normal{}, against{};
     for (const FacePack& f : packs()) {
-        const Pack* const v = &f.corners[0];
-        const PackGradient g0(c, v[0], v[1], v[2]), g1(c, v[3], v[4], v[5]), g2(c, v[6], v[7], v[8]);
-        // f = c0 + u·(b + ∇f)/2; middles of edges from end values and gradients (see triangle_energy).
-        const Pack f0 = 0.5 * (v[0] * (g0.x + c[1]) + v[1] * (g0.y + c[2]) + v[2] * (g0.z + c[3])) + c[0];
-        const Pack f1 = 0.5 * (v[3] * (g1.x + c[1]) + v[4] * (g1.y + c[2]) + v[5] * (g1.z + c[3])) + c[0];
-        const Pack f2 = 0.5 * (v[6] * (g2.x + c[1]) + v[7] * (g2.y + c[2]) + v[8] * (g2.z + c[3])) + c[0];
-        const Pack m01 = 0.5 * (f0 + f1) + 0.125 * ((g0.x - g1.x) * (v[3] - v[0]) + (g0.y - g1.y) * (v[4] - v[1]) +
-                                                    (g0.z - g1.z) * (v[5] - v[2]));
-        const Pack m12 = 0.5 * (f1 + f2) + 0.125 * ((g1.x - g2.x) * (v[6] - v[3]) + (g1.y - g2.y) * (v[7] - v[4]) +
-                                                    (g1.z - g2.z) * (v[8] - v[5]));
-        const Pack m20 = 0.5 * (f2 + f0) + 0.125 * ((g2.x - g0.x) * (v[0] - v[6]) + (g2.y - g0.y) * (v[1] - v[7]) +
-                                                    (g2.z - g0.z) * (v[2] - v[8]));
-        const Pack corners = f0 + f1 + f2, middles = m01 + m12 + m20;
-        const Pack integral = 7.0 * (f0 * f0 + f1 * f1 + f2 * f2) - corners * corners -
-                              8.0 * (f0 * m12 + f1 * m20 + f2 * m01) +
-                              16.0 * (middles * middles + m01 * m01 + m12 * m12 + m20 * m20);
-        const Pack sx = g0.x + g1.x + g2.x, sy = g0.y + g1.y + g2.y, sz = g0.z + g1.z + g2.z;
-        Pack length;
-        square_root((sx * sx + sy * sy + sz * sz) * (1.0 / 9), length);
-        maximum(length, floor, length);
-        const Pack r = 1.0 / length;
-        distance += f.area * integral * (r * r);
-        const Pack &nx = f.normal[0], &ny = f.normal[1], &nz = f.normal[2];
-        Pack misfit{};
-        const auto add_square = [&](const Pack& x, const Pack& y, const Pack& z) { misfit += x * x + y * y + z * z; };
-        add_square(g0.x * r - nx, g0.y * r - ny, g0.z * r - nz);
-        add_square(g1.x * r - nx, g1.y * r - ny, g1.z * r - nz);
-        add_square(g2.x * r - nx, g2.y * r - ny, g2.z * r - nz);
-        add_square(sx * r - 3.0 * nx, sy * r - 3.0 * ny, sz * r - 3.0 * nz);
-        normal += f.area * misfit;
-        Pack along;
-        where_positive(sx * nx + sy * ny + sz * nz, f.area, along);
-        against += f.area - along;
+        PackEnergy energy;
+        pack_energy(c.data(), f, floor, energy);
+        distance += energy.distance;
+        normal += energy.normal;
+        against += f.area - energy.along;
     }
     candidate.distance = std::max(0.0, horizontal_sum(distance) * (1.0 / 180));
     candidate.normal = std::max(0.0, horizontal_sum(normal) * (1.0 / 12));

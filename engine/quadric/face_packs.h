@@ -4,7 +4,7 @@
 
 #include "quadric/moments.h"
 #include "quadric/monomials.h"
-#include "quadric/pack.h"
+#include "quadric/pack_energy.h"
 #include "quadric/region_fit.h"
 
 #include <cstddef>
@@ -13,12 +13,6 @@
 #include <vector>
 
 namespace quadseg::quadric {
-
-struct FacePack {
-    Pack corners[9];  ///< x y z of three corners
-    Pack normal[3];
-    Pack area;  ///< 0 in the lanes that are filled up and for faces without area
-};
 
 /// What the weights of the second step and the true energies need to know of a candidate.
 struct Candidate {

@@ -9,6 +9,9 @@ namespace {
 /// An angle of 1e-6 rad on every normal: energies below this are rounding and do not decide between models.
 constexpr double rounding_angle_square = 1e-12;
 
+/// Of the radius: a centroid nearer to the origin than this is at it to rounding.
+constexpr double centred_share = 1e-10;
+
 /// Without the ladder a quadric must beat the plane by more than this to be worth its degrees of freedom.
 constexpr double equal_to_rounding = 1 + 1e-3;
 
@@ -33,13 +36,16 @@ Moments joined(const Moments& a, const Vec3& origin_a, const Moments& b, const V
 
 LadderFit fit_ladder(const Moments& m, double weight, bool ladder) noexcept {
     LadderFit result;
-    const Spread size = spread(m);
+    Spread size = spread(m);
     if (!(size.radius > 0)) {
         result.c = fit_plane(m, weight).c;
         return result;
     }
     const double scale = 1 / size.radius;
-    const Moments centred = scaled(shifted(m, size.centroid), scale);
+    // Regions are merged about their common centroid: then there is nothing to shift.
+    const bool is_centred = squared_norm(size.centroid) <= centred_share * centred_share * size.radius * size.radius;
+    if (is_centred) size.centroid = {};
+    const Moments centred = scaled(is_centred ? m : shifted(m, size.centroid), scale);
     const double local_weight = scaled_weight(weight, scale);
     const double rounding = rounding_angle_square * (local_weight + 1e-12) * centred.area[0];
 

@@ -89,8 +89,8 @@ class Frames {
             case QuadricFamily::revolution:
                 frames.push_back(frame_about(line_point_, line_, any_perpendicular(line_)));
                 break;
-            default:
-                frames.push_back(frame_about({}, {0, 0, 1}, {1, 0, 0}));
+            case QuadricFamily::general:
+                break;
         }
         return frames;
     }
@@ -191,7 +191,6 @@ class Chooser {
         best.freedom = degrees_of_freedom(family);
         best.preference = 1.15 + 0.02 * best.freedom;
         if (points_.size() < std::size_t(best.freedom)) return best;
-        const Frames frames(points_, general());
         auto consider = [&](const QuadricFrame& start) {
             Coefficients c;
             if (!refine_quadric(family, points_, start, options_, c)) return;
@@ -199,7 +198,7 @@ class Chooser {
             if (!f.ok || !belongs(f.surface.type, family)) return;
             if (!best.fit.ok || f.rms < best.fit.rms) best.fit = f;
         };
-        for (QuadricFrame start : frames.of(family)) {
+        for (QuadricFrame start : frames_of(family)) {
             QuadricFrame guided = start;
             if (start_quadric(family, points_, start)) consider(start);
             if (family == QuadricFamily::general && present(start_)) {
@@ -214,6 +213,12 @@ class Chooser {
   private:
     void finish(Candidate& c) const {
         if (c.fit.ok) c.deviation = normal_deviation(c.fit.surface, p_);
+    }
+
+    /// The general quadric has every frame: none need be looked for.
+    std::vector<QuadricFrame> frames_of(QuadricFamily family) {
+        if (family == QuadricFamily::general) return {frame_about({}, {0, 0, 1}, {1, 0, 0})};
+        return Frames(points_, general()).of(family);
     }
 
     /// A first general quadric, for frames only.

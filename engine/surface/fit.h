@@ -21,8 +21,8 @@ struct FitOptions {
     bool robust =
         true;  ///< Cauchy weights with scale 3·median |d|, re-estimated: trim-curve vertices may be off by 1e-5
     double minimum_scale = 1e-12;  ///< of the robust scale, in the points' unit
-    double hopeless =
-        0;              ///< give up after 5 steps if the median |d| is still above this, in the points' unit; 0: never
+    double hopeless = 0;           ///< give up if the median |d| is still above this, in the points' unit; 0: never …
+    int hopeless_after = 5;        ///< … after so many steps
     double wanted = 0;  ///< a fit is of use only with a median |d| up to this, in the points' unit: give up where it
                         ///< stops falling above, take the first start that leads well below; 0: any is of use
 };

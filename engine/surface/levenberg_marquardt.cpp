@@ -18,7 +18,6 @@ constexpr double indistinguishable = 1e-13;
 // Mean squared derivative of the distance below which a parameter has no effect at all (the axis of a torus that is a
 // sphere).
 constexpr double no_effect = 1e-15;
-constexpr int hopeless_after = 5;
 // Up to so many values the median is found by counting.
 constexpr std::size_t few = 48;
 // Steps in a row that leave the median where it is, after which it is not going to fall much.
@@ -220,7 +219,7 @@ class Problem {
             double longest = 0;
             for (double v : step) longest = std::max(longest, std::abs(v));
             if (plateau >= 4 || longest < 1e-15 || !(current > 0)) break;
-            if (hopeless > 0 && accepted == hopeless_after &&
+            if (hopeless > 0 && accepted == options.hopeless_after &&
                 median_magnitude(p_.distance, p_.size(), p_.sorted) > hopeless)
                 break;
             // The scale is three times the median.

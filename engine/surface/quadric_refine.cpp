@@ -208,7 +208,7 @@ bool refine_quadric(QuadricFamily family, LocalPoints& points, const QuadricFram
     scale = scale_of(points.distance);
     cost = robust_cost(points, points.distance, scale);
     if (!std::isfinite(cost)) return false;
-    int plateau = 0;
+    int plateau = 0, accepted = 0;
     SmallSystem system(n);
     bool fresh = false;
     for (int iteration = 0; iteration < 2 * options.iterations; ++iteration) {
@@ -292,6 +292,9 @@ bool refine_quadric(QuadricFamily family, LocalPoints& points, const QuadricFram
         scale = scale_there;
         cost = robust_cost(points, points.distance, scale);
         if (plateau >= 2 || !(cost > 0)) break;
+        if (options.hopeless > 0 && ++accepted == options.hopeless_after &&
+            median_magnitude(points.distance, points.size(), points.sorted) * points.extent > options.hopeless)
+            return false;
     }
     coefficients = from_frame(best);
     for (double v : coefficients)

@@ -44,6 +44,37 @@ Labels ragged_sides(const mesh::WorkMesh& mesh) {
     return labels;
 }
 
+/// Energy of the labels under the surfaces that came with them.
+double energy_under(const mesh::WorkMesh& mesh, const Labels& labels, const std::vector<quadric::RegionFit>& fits) {
+    double sum = 0;
+    for (std::size_t f = 0; f < labels.size(); ++f) {
+        sum += quadric::triangle_energy(fits[static_cast<std::size_t>(labels[f])].proxy, mesh.corner(f, 0),
+                                        mesh.corner(f, 1), mesh.corner(f, 2), mesh.normals[f], mesh.areas[f])
+                   .hybrid(0.5);
+    }
+    return sum;
+}
+
+TEST(Relax, SettledRegionsKeepTheirSurfacesAndTheEnergyTheirFacesHave) {
+    const Mesh part = datasets::generate("quadrics", 6000).mesh;
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(part.view(), free_run);
+    const Passage passage{&mesh};
+    const partition::Leaves leaves = partition::grow_leaves(passage, {}, free_run);
+    std::vector<double> energies;
+    for (const double settled : {0.0, 0.03, 1.0}) {
+        Labels labels = leaves.labels;
+        RelaxOptions options;
+        options.moment_steps = 1;
+        options.settled = settled;
+        const Relaxed relaxed =
+            partition::relax(passage, labels, measure(mesh, labels, leaves.count), options, free_run);
+        test::expect_partition(passage, labels, leaves.count);
+        EXPECT_NEAR(relaxed.energy, energy_under(mesh, labels, relaxed.fits), 1e-6 * relaxed.energy) << settled;
+        energies.push_back(relaxed.energy);
+    }
+    EXPECT_LT(energies[1], 1.02 * energies[0]);
+}
+
 TEST(Relax, BringsBordersBackToTheCreases) {
     const mesh::WorkMesh mesh = test::work_mesh(test::box(24));
     const Passage passage{&mesh};
