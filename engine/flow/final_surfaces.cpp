@@ -104,7 +104,11 @@ class TypeChoice {
         for (const SurfaceType type : {SurfaceType::sphere, SurfaceType::cylinder, SurfaceType::cone}) {
             options_.hopeless = (settle_early_ ? 4 : 2) * limit();
             options_.wanted = settle_early_ ? most_median_of_rms * limit() : 0;
-            consider(surface::fit(type, p_, options_));
+            const SurfaceFit fit = surface::fit(type, p_, options_);
+            consider(fit);
+            // A cylinder with every vertex on it is a cone that needs no angle.
+            if (settle_early_ && type == SurfaceType::cylinder && fit.ok && exact_quadric_gain * fit.rms < own.rms)
+                break;
         }
         options_.wanted = 0;
         // Where energy made the regions, a simple type that is nearer to the vertices than the quadric settles it.

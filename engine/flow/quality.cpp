@@ -5,6 +5,7 @@
 #include "surface/evaluate.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -33,7 +34,7 @@ void add_distances(const mesh::WorkMesh& mesh, const Faces& faces, const Evaluat
     }
 }
 
-/// visit(vertex, weight) once a vertex of the faces, ascending; the weight is a third of the areas of its faces.
+/// visit(vertex, weight) once a vertex of the faces; the weight is a third of the areas of its faces.
 template <class Visit>
 void for_weighted_vertices(const mesh::WorkMesh& mesh, const Faces& faces, const Visit& visit) {
     const auto count = static_cast<std::size_t>(faces.second - faces.first);
@@ -57,18 +58,24 @@ void for_weighted_vertices(const mesh::WorkMesh& mesh, const Faces& faces, const
         }
         return;
     }
+    // Open addressing; visited in the order in which the faces name them.
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    const std::size_t mask = std::bit_ceil(4 * count) - 1;
+    std::vector<std::uint32_t> slot_of(mask + 1, none);
     std::vector<std::pair<std::uint32_t, double>> weights;
-    weights.reserve(3 * count);
+    weights.reserve(2 * count);
     for (const std::uint32_t* f = faces.first; f != faces.second; ++f) {
-        for (const std::uint32_t v : mesh.faces[*f]) weights.emplace_back(v, mesh.areas[*f] / 3);
+        for (const std::uint32_t v : mesh.faces[*f]) {
+            std::size_t i = (v * std::size_t{0x9e3779b97f4a7c15} >> 32U) & mask;
+            while (slot_of[i] != none && weights[slot_of[i]].first != v) i = (i + 1) & mask;
+            if (slot_of[i] == none) {
+                slot_of[i] = static_cast<std::uint32_t>(weights.size());
+                weights.emplace_back(v, 0.0);
+            }
+            weights[slot_of[i]].second += mesh.areas[*f] / 3;
+        }
     }
-    std::stable_sort(weights.begin(), weights.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t i = 0; i < weights.size();) {
-        const std::uint32_t v = weights[i].first;
-        double weight = 0;
-        for (; i < weights.size() && weights[i].first == v; ++i) weight += weights[i].second;
-        visit(v, weight);
-    }
+    for (const auto& [v, weight] : weights) visit(v, weight);
 }
 
 /// General quadrics, whose foot points are dear, are evaluated once a vertex.

@@ -1,6 +1,7 @@
 #include "partition/pair_merge.h"
 
 #include "quadric/ladder.h"
+#include "quadric/moment_accumulator.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 constexpr std::size_t face_grain = 16384;
 constexpr std::size_t region_grain = 64;
 constexpr std::size_t pair_grain = 256;
+constexpr std::size_t least_packed = 8;  ///< faces of a region from which on moments on packs are cheaper
 
 std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) noexcept {
     return std::uint64_t{a} << 32U | b;
@@ -256,12 +258,24 @@ std::vector<MergeRegion> measure_regions(const mesh::WorkMesh& mesh, const Label
             MergeRegion& region = regions[r];
             if (faces.size(r) == 0) continue;
             region.origin = area > 0 ? weighted / area : plain / static_cast<double>(faces.size(r));
-            for (std::size_t i = faces.begin[r]; i < faces.begin[r + 1]; ++i) {
-                if ((++polled & 4095U) == 0) control.check();
-                const std::size_t f = faces.face[i];
-                quadric::accumulate(region.moments, mesh.corner(f, 0) - region.origin,
-                                    mesh.corner(f, 1) - region.origin, mesh.corner(f, 2) - region.origin,
-                                    mesh.normals[f], mesh.areas[f]);
+            const auto for_each_face = [&](const auto& add) {
+                for (std::size_t i = faces.begin[r]; i < faces.begin[r + 1]; ++i) {
+                    if ((++polled & 4095U) == 0) control.check();
+                    const std::size_t f = faces.face[i];
+                    add(mesh.corner(f, 0) - region.origin, mesh.corner(f, 1) - region.origin,
+                        mesh.corner(f, 2) - region.origin, mesh.normals[f], mesh.areas[f]);
+                }
+            };
+            if (faces.size(r) < least_packed) {
+                for_each_face([&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& n, double face_area) {
+                    quadric::accumulate(region.moments, a, b, c, n, face_area);
+                });
+            } else {
+                quadric::MomentAccumulator sum;
+                for_each_face([&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& n, double face_area) {
+                    sum.add(a, b, c, n, face_area);
+                });
+                region.moments = sum.moments();
             }
             region.score = scorer(region.moments);
         }
