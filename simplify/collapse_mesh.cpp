@@ -3,7 +3,6 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -60,7 +59,7 @@ class VertexBuilder {
             quadric.add_plane(normals_[f], dot(normals_[f], mesh_.vertices[face[0]].position), areas_[f]);
             quadric.area += areas_[f];
         }
-        mesh_.valence[v] = corners;
+        mesh_.vertices[v].valence = corners;
         std::sort(sides_.begin(), sides_.end(), [](const Side& s, const Side& t) {
             return s.neighbor != t.neighbor
                        ? s.neighbor < t.neighbor
@@ -134,12 +133,19 @@ struct Star {
     std::size_t size = 0;
     std::array<std::uint32_t, max_valence> corner, next, previous;
 
-    bool gather(const CollapseMesh& mesh, std::uint32_t v) {
+    /// Corners of faces that are gone leave the list of v.
+    bool gather(CollapseMesh& mesh, std::uint32_t v) {
         size = 0;
-        for (std::uint32_t c = mesh.first_corner[v]; c != none; c = mesh.next_corner[c]) {
-            if (size == max_valence) return false;
-            const std::uint32_t f = corner_face(c), k = c - 3 * f;
+        std::uint32_t* link = &mesh.first_corner[v];
+        while (*link != none) {
+            const std::uint32_t c = *link, f = corner_face(c), k = c - 3 * f;
             const Face& face = mesh.faces[f];
+            if (face[0] == none) {
+                *link = mesh.next_corner[c];
+                continue;
+            }
+            if (size == max_valence) return false;
+            link = &mesh.next_corner[c];
             corner[size] = c;
             next[size] = face[k == 2 ? 0 : k + 1];
             previous[size] = face[k == 0 ? 2 : k - 1];
@@ -238,14 +244,12 @@ bool build_collapse_mesh(std::span<const Vec3> positions, std::span<const Face> 
     const std::size_t vertices = positions.size(), n = faces.size();
     mesh.frame = box_frame(positions);
     mesh.vertices.resize(vertices);
-    mesh.source.resize(vertices);
     mesh.first_corner.assign(vertices, none);
     mesh.next_corner.assign(3 * n, none);
     mesh.faces.assign(faces.begin(), faces.end());
-    mesh.valence.assign(vertices, 0);
     runtime::parallel_for(vertices, grain, [&](std::size_t v) {
         mesh.vertices[v].position = mesh.frame.to_unit(finite_or_zero(positions[v]));
-        mesh.source[v] = static_cast<std::uint32_t>(v);
+        mesh.vertices[v].source = static_cast<std::uint32_t>(v);
     });
     std::vector<Vec3> normals(n);
     std::vector<double> areas(n);
@@ -292,7 +296,7 @@ Placement place_collapsed(const CollapseMesh& mesh, std::uint32_t v, std::uint32
     if (bv != bw || (bv & vertex_locked) != 0) {
         const std::uint32_t kept = bv > bw ? v : w;
         placed.position = mesh.vertices[kept].position;
-        placed.source = mesh.source[kept];
+        placed.source = mesh.vertices[kept].source;
     } else {
         const Vec3 middle = (pv + pw) * 0.5;
         placed.position = q.minimum_near(middle);
@@ -329,8 +333,7 @@ std::size_t try_collapse(CollapseMesh& mesh, std::uint32_t v, std::uint32_t w, c
     }
     for (std::size_t i = 0; i < edge.count; ++i) {
         mesh.faces[edge.face[i]] = {none, heir[i], none};
-        // The apex may be one of another collapse that runs now.
-        std::atomic_ref<std::uint32_t>(mesh.valence[edge.apex[i]]).fetch_sub(1, std::memory_order_relaxed);
+        --mesh.vertices[edge.apex[i]].valence;
     }
     std::uint32_t* link = &mesh.first_corner[v];
     std::uint32_t count = 0;
@@ -345,9 +348,10 @@ std::size_t try_collapse(CollapseMesh& mesh, std::uint32_t v, std::uint32_t w, c
         }
     }
     *link = none;
-    mesh.valence[v] = count;
+    mesh.face_count -= edge.count;
+    mesh.vertices[v].valence = count;
     mesh.vertices[v].position = placement.position;
-    mesh.source[v] = placement.source;
+    mesh.vertices[v].source = placement.source;
     mesh.vertices[v].quadric += mesh.vertices[w].quadric;
     mesh.vertices[v].flags |= mesh.vertices[w].flags;
     mesh.vertices[w].flags |= vertex_dead;

@@ -1,5 +1,5 @@
 // A triangle mesh under edge collapses: the corners of a vertex form a list, so that a collapse splices two lists and
-// touches nothing but the two stars. Collapses whose stars share no face may run at once.
+// touches nothing but the two stars.
 #pragma once
 
 #include "math/vec3.h"
@@ -23,7 +23,8 @@ enum VertexFlag : std::uint8_t {
     vertex_border = 1,     ///< moves along its border only
     vertex_locked = 2,     ///< non-manifold: stays where it is
     vertex_irregular = 4,  ///< the successors of its corners do not name every neighbour exactly once
-    vertex_dead = 8
+    vertex_dead = 8,
+    vertex_frozen = 16  ///< faces outside of the piece at hand: stays as it is
 };
 
 /// Corner i = corner i % 3 of face i / 3.
@@ -42,7 +43,9 @@ struct Frame {
 /// What the cost of an edge needs of its ends, together: two cache lines.
 struct alignas(64) Vertex {
     ErrorQuadric quadric;
-    Vec3 position;  ///< in the frame
+    Vec3 position;                ///< in the frame
+    std::uint32_t source = none;  ///< input vertex whose position this is exactly, or none
+    std::uint32_t valence = 0;    ///< live faces
     std::uint8_t flags = 0;
 };
 
@@ -51,9 +54,7 @@ struct CollapseMesh {
     std::vector<Vertex> vertices;
     std::vector<Face> faces;  ///< dead: {none, face that took its place, –}
     std::vector<std::uint32_t> first_corner, next_corner;
-    std::vector<std::uint32_t> valence;  ///< live faces of a vertex
-    std::vector<std::uint32_t> source;   ///< input vertex whose position this is exactly, or none
-    std::size_t face_count = 0;          ///< alive
+    std::size_t face_count = 0;  ///< alive
 
     bool alive(std::uint32_t face) const noexcept { return faces[face][0] != none; }
     bool dead_vertex(std::uint32_t v) const noexcept { return (vertices[v].flags & vertex_dead) != 0; }
@@ -78,21 +79,6 @@ struct Placement {
 };
 /// Where the vertex that replaces v and w goes.
 Placement place_collapsed(const CollapseMesh& mesh, std::uint32_t v, std::uint32_t w);
-
-/// visit(corner) for the live corners of v; dead ones leave the list. Only v's own list is written.
-template <class Visit>
-void visit_and_clean_corners(CollapseMesh& mesh, std::uint32_t v, const Visit& visit) {
-    std::uint32_t* link = &mesh.first_corner[v];
-    while (*link != none) {
-        const std::uint32_t corner = *link;
-        if (mesh.alive(corner_face(corner))) {
-            visit(corner);
-            link = &mesh.next_corner[corner];
-        } else {
-            *link = mesh.next_corner[corner];
-        }
-    }
-}
 
 /// Collapses edge (v, w) into v unless that changes the topology (link condition, Dey et al. 1999), turns a face over
 /// or, with `keep_shape`, makes a sliver. Returns the number of faces removed: 0: refused and nothing changed.

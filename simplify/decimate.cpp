@@ -1,12 +1,12 @@
 #include "simplify/decimate.h"
 
 #include "runtime/parallel.h"
+#include "runtime/per_thread.h"
 #include "simplify/collapse_mesh.h"
 #include "simplify/face_map.h"
+#include "simplify/piece.h"
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -14,309 +14,127 @@
 namespace quadseg::simplify {
 namespace {
 
-constexpr std::size_t grain = 1024;
-constexpr std::size_t collapse_grain = 128;
-/// Each round considers this share of the vertices, those with the cheapest collapses.
-constexpr double candidate_share = 0.3;
-constexpr std::size_t quantile_samples = 4096;
-/// Rivals whose stars overlap compete this often a round.
-constexpr std::uint64_t contests = 2;
-constexpr float unusable = std::numeric_limits<float>::infinity();
+/// Faces of a piece: with its vertices 400 kB, what a core keeps in its own cache. A tenth of them touch its border.
+constexpr std::size_t piece_faces = 4096;
+/// A phase leaves half of the faces; a quarter while that is more than `far` times the target, where what it does too
+/// much in one place or another comes to nothing.
+constexpr double phase_share = 0.5, far_phase_share = 0.25, far = 3;
+/// Pieces stop that much above the target: the rest, over the whole mesh, has the last word on where faces go.
+constexpr double reserve = 1.05;
+constexpr std::size_t most_phases = 16;
+/// A phase that removes less than this share of the faces has done what it could.
+constexpr double least_progress = 0.02;
+constexpr std::size_t cost_samples = 4096;
+constexpr float any_cost = std::numeric_limits<float>::max();
 
-/// Ban bits of a corner: the edge to its successor or its predecessor was refused and nothing around it has changed.
-enum Ban : std::uint8_t { ban_next = 1, ban_previous = 2 };
-
-struct Candidate {
-    std::uint32_t partner = none;  ///< the vertex of higher index that collapses into this one
-    float cost = unusable;
-};
-
-/// One to one on 32 bits (Wellons' lowbias32): spreads rivals of equal cost over the surface.
-std::uint32_t scramble(std::uint32_t x) {
-    x ^= x >> 16;
-    x *= 0x7feb352dU;
-    x ^= x >> 15;
-    x *= 0x846ca68bU;
-    x ^= x >> 16;
-    return x;
-}
-
-void lower(std::uint64_t& claim, std::uint64_t key) {
-    std::atomic_ref<std::uint64_t> shared(claim);
-    std::uint64_t seen = shared.load(std::memory_order_relaxed);
-    while (key < seen && !shared.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-    }
-}
-
-/// The elements of `list` that `keep` wants, in order.
-template <class Keep>
-std::vector<std::uint32_t> filter(const std::vector<std::uint32_t>& list, const Keep& keep) {
-    std::vector<std::vector<std::uint32_t>> parts((list.size() + grain - 1) / grain);
-    runtime::parallel_blocks(list.size(), grain, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t>& part = parts[begin / grain];
-        for (std::size_t i = begin; i < end; ++i) {
-            if (keep(list[i])) part.push_back(list[i]);
-        }
-    });
-    std::vector<std::uint32_t> kept;
-    for (const auto& part : parts) kept.insert(kept.end(), part.begin(), part.end());
-    return kept;
-}
-
-/// Rounds of collapses at once: the cheapest edge of every vertex; a threshold; of rivals whose stars overlap the
-/// cheapest (Luby's independent sets); their collapses in parallel; new costs around them only.
+/// Phases: the mesh is cut into pieces, which collapse their cheapest edges at once, up to a cost that is the same for
+/// all; the next phase cuts elsewhere. When little is left to do, or the mesh is small, it is done in one piece.
 class Decimator {
   public:
     Decimator(CollapseMesh& mesh, std::size_t target, const std::function<bool()>& stopped)
-        : mesh_(mesh), target_(target), stopped_(stopped) {}
+        : mesh_(mesh), target_(target), stopped_(stopped) {
+        alive_.reserve(mesh.face_count);
+        for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+            if (mesh.alive(static_cast<std::uint32_t>(i))) alive_.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
 
     void run() {
-        const std::size_t vertices = mesh_.vertices.size();
-        candidates_.resize(vertices);
-        changed_.assign(vertices, 0);
-        dirty_.assign(vertices, 0);
-        has_ban_.assign(vertices, 0);
-        bans_.assign(mesh_.next_corner.size(), 0);
-        vertex_claims_.assign(vertices, std::numeric_limits<std::uint64_t>::max());
-        face_claims_.assign(mesh_.faces.size(), std::numeric_limits<std::uint64_t>::max());
-        live_.clear();
-        for (std::size_t v = 0; v < vertices; ++v) {
-            if (mesh_.first_corner[v] != none) live_.push_back(static_cast<std::uint32_t>(v));
+        for (std::size_t phase = 0; phase < most_phases && !stopped_(); ++phase) {
+            const auto count = static_cast<double>(alive_.size());
+            if (alive_.size() <= 2 * piece_faces || count <= reserve * static_cast<double>(target_)) break;
+            collapse_pieces(phase);
+            if (static_cast<double>(alive_.size()) > (1 - least_progress) * count) break;
         }
-        for (const bool keep_shape : {true, false}) {
-            keep_shape_ = keep_shape;
-            evaluate_all_ = true;
-            double share = candidate_share;
-            while (mesh_.face_count > target_ && !stopped_()) {
-                const RoundResult result = round(share);
-                if (result.candidates == 0) break;
-                share = 64 * result.collapses < result.candidates ? 1 : candidate_share;
-            }
-            std::fill(bans_.begin(), bans_.end(), std::uint8_t{0});
-        }
+        if (!stopped_()) collapse_whole();
+        mesh_.face_count = alive_.size();
     }
 
     double max_error() const noexcept { return max_error_; }
 
   private:
-    struct RoundResult {
-        std::size_t candidates = 0, collapses = 0;
-    };
-
-    RoundResult round(double share) {
-        ++round_;
-        runtime::parallel_blocks(live_.size(), grain, [&](std::size_t begin, std::size_t end) {
-            if (stopped_()) return;
-            for (std::size_t i = begin; i < end; ++i) update_candidate(live_[i]);
+    void collapse_pieces(std::size_t phase) {
+        cut_into_pieces(mesh_, phase, piece_faces, alive_, pieces_);
+        const auto count = static_cast<double>(alive_.size());
+        const auto target = static_cast<double>(target_);
+        PieceLimits limits;
+        const double share = far_phase_share * count > far * target ? far_phase_share : phase_share;
+        limits.largest_cost = cost_that_leaves(std::max(share, (1 + 0.4 * (reserve - 1)) * target / count));
+        std::vector<std::vector<std::uint32_t>> survivors(pieces_.faces.size());
+        std::vector<double> errors(pieces_.faces.size(), 0);
+        runtime::parallel_for(pieces_.faces.size(), 1, [&](std::size_t i) {
+            Piece& piece = workspace_.local();
+            piece.load(mesh_, pieces_, static_cast<std::uint32_t>(i));
+            PieceLimits own = limits;
+            // Whatever the costs, all together stay above the target.
+            own.fewest_faces =
+                static_cast<std::size_t>(std::ceil(target / count * static_cast<double>(piece.face_count())));
+            if (!stopped_()) piece.collapse(own, stopped_);
+            piece.store(mesh_, survivors[i]);
+            errors[i] = piece.max_error();
         });
-        evaluate_all_ = false;
-        if (stopped_()) return {};
-        const float threshold = cost_quantile(share);
-        std::vector<std::uint32_t> rivals = filter(
-            live_, [&](std::uint32_t v) { return candidates_[v].cost <= threshold && candidates_[v].cost < unusable; });
-        RoundResult result{rivals.size(), 0};
-        for (std::uint64_t contest = 0; contest < contests && mesh_.face_count > target_; ++contest) {
-            result.collapses += collapse_winners(rivals, contest);
-            if (stopped_()) break;
-            // Only those remain that touch no vertex of a collapsed star.
-            rivals = filter(rivals, [&](std::uint32_t v) {
-                return dirty_[v] != round_ && dirty_[candidates_[v].partner] != round_;
-            });
-        }
-        dead_ += result.collapses;
-        if (8 * dead_ > live_.size()) {
-            live_ = filter(live_, [&](std::uint32_t v) { return !mesh_.dead_vertex(v); });
-            dead_ = 0;
-        }
-        return result;
+        alive_.clear();
+        for (const auto& part : survivors) alive_.insert(alive_.end(), part.begin(), part.end());
+        for (const double error : errors) max_error_ = std::max(max_error_, error);
     }
 
-    // ---- costs
-
-    void update_candidate(std::uint32_t v) {
-        if (mesh_.dead_vertex(v)) {
-            candidates_[v] = {};
-            return;
-        }
-        if (!evaluate_all_ && dirty_[v] + 1 != round_) return;
-        const bool hub = mesh_.valence[v] > max_valence;
-        Candidate best = candidates_[v];
-        const bool afresh = evaluate_all_ || has_ban_[v] != 0 || is_new(v) || best.partner == none ||
-                            mesh_.dead_vertex(best.partner) || is_new(best.partner);
-        const bool has_ban = has_ban_[v] != 0;
-        if (afresh) {
-            best = {};
-            has_ban_[v] = 0;
-        }
-        const bool regular = (mesh_.vertices[v].flags & vertex_irregular) == 0;
-        visit_and_clean_corners(mesh_, v, [&](std::uint32_t c) {
-            if (hub) return;
-            const std::uint32_t f = corner_face(c), k = c - 3 * f;
-            const Face& face = mesh_.faces[f];
-            consider(v, face[k == 2 ? 0 : k + 1], has_ban && (bans_[c] & ban_next) != 0, afresh, best);
-            if (!regular) {
-                consider(v, face[k == 0 ? 2 : k - 1], has_ban && (bans_[c] & ban_previous) != 0, afresh, best);
-            }
-        });
-        candidates_[v] = best;
-    }
-
-    bool is_new(std::uint32_t v) const { return changed_[v] + 1 == round_; }
-
-    void consider(std::uint32_t v, std::uint32_t w, bool banned, bool afresh, Candidate& best) {
-        if (w <= v || !(afresh || is_new(w))) return;
-        if (banned) {
-            has_ban_[v] = 1;
-            return;
-        }
-        if (mesh_.valence[w] > max_valence || (mesh_.vertices[v].flags & mesh_.vertices[w].flags & vertex_locked) != 0)
-            return;
-        const auto cost = static_cast<float>(place_collapsed(mesh_, v, w).cost);
-        if (cost < best.cost || (cost == best.cost && w < best.partner)) best = {w, cost};
-    }
-
-    /// From a sample of every so-manieth vertex.
-    float cost_quantile(double share) {
-        sample_.clear();
-        const std::size_t step = std::max<std::size_t>(1, live_.size() / quantile_samples);
-        for (std::size_t i = 0; i < live_.size(); i += step) {
-            const float cost = candidates_[live_[i]].cost;
-            if (cost < unusable) sample_.push_back(cost);
-        }
-        if (sample_.empty()) return unusable;
-        // Towards the end as few as four rivals for every collapse that is still wanted.
-        const double wanted = 2.0 * static_cast<double>(mesh_.face_count - target_) / static_cast<double>(live_.size());
-        const double part = std::min(share, std::max(wanted, 16.0 / static_cast<double>(live_.size())));
-        const auto rank = static_cast<std::size_t>(part * static_cast<double>(sample_.size()));
-        const auto nth = sample_.begin() + static_cast<std::ptrdiff_t>(std::min(rank, sample_.size() - 1));
-        std::nth_element(sample_.begin(), nth, sample_.end());
-        return *nth;
-    }
-
-    // ---- contests
-
-    template <class Visit>
-    void for_star_faces(std::uint32_t v, const Visit& visit) const {
-        for (const std::uint32_t end : {v, candidates_[v].partner}) {
-            for (std::uint32_t c = mesh_.first_corner[end]; c != none; c = mesh_.next_corner[c]) visit(corner_face(c));
-        }
-    }
-
-    /// Lower wins. Later contests have lower keys, so that claims need no reset; among rivals of one contest the power
-    /// of two of the cost decides, then chance: the exact order would leave few local minima in a smooth field of
-    /// costs.
-    std::uint64_t key(std::uint32_t v, std::uint64_t contest) const {
-        const std::uint64_t turn = 0xffffffU - (std::uint64_t{round_} * contests + contest);
-        const std::uint64_t magnitude = std::bit_cast<std::uint32_t>(candidates_[v].cost) >> 23;
-        return turn << 40 | magnitude << 32 | scramble(v ^ (round_ << 8));
-    }
-
-    /// Rivals that are the best at both of their vertices, then of those the best at all faces of their stars.
-    std::vector<std::uint32_t> find_winners(const std::vector<std::uint32_t>& rivals, std::uint64_t contest) {
-        const auto for_all = [&](const std::vector<std::uint32_t>& list, const auto& body) {
-            runtime::parallel_for(list.size(), collapse_grain, [&](std::size_t i) { body(list[i]); });
-        };
-        for_all(rivals, [&](std::uint32_t v) {
-            lower(vertex_claims_[v], key(v, contest));
-            lower(vertex_claims_[candidates_[v].partner], key(v, contest));
-        });
-        const std::vector<std::uint32_t> finalists = filter(rivals, [&](std::uint32_t v) {
-            const std::uint64_t own = key(v, contest);
-            return vertex_claims_[v] == own && vertex_claims_[candidates_[v].partner] == own;
-        });
-        for_all(finalists, [&](std::uint32_t v) {
-            const std::uint64_t own = key(v, contest);
-            for_star_faces(v, [&](std::uint32_t f) { lower(face_claims_[f], own); });
-        });
-        return filter(finalists, [&](std::uint32_t v) {
-            const std::uint64_t own = key(v, contest);
-            bool wins = true;
-            for_star_faces(v, [&](std::uint32_t f) { wins = wins && face_claims_[f] == own; });
-            return wins;
-        });
-    }
-
-    std::size_t collapse_winners(const std::vector<std::uint32_t>& rivals, std::uint64_t contest) {
-        std::vector<std::uint32_t> winners = find_winners(rivals, contest);
-        // Not beyond the target: the cheapest only.
-        const std::size_t wanted = (mesh_.face_count - target_ + 1) / 2;
-        if (winners.size() > wanted) {
-            std::sort(winners.begin(), winners.end(), [&](std::uint32_t v, std::uint32_t w) {
-                return candidates_[v].cost != candidates_[w].cost ? candidates_[v].cost < candidates_[w].cost : v < w;
-            });
-            winners.resize(wanted);
-        }
-        struct Sum {
-            std::size_t faces = 0, collapses = 0;
-            double error = 0;
-        };
-        const Sum sum = runtime::reduce_blocks(
-            winners.size(), collapse_grain, Sum{},
-            [&](std::size_t begin, std::size_t end) {
-                Sum part;
-                for (std::size_t i = begin; i < end && !stopped_(); ++i) {
-                    double error = 0;
-                    const std::size_t faces = collapse(winners[i], error);
-                    part.faces += faces;
-                    part.collapses += faces > 0;
-                    part.error = std::max(part.error, error);
-                }
-                return part;
-            },
-            [](Sum a, const Sum& b) {
-                return Sum{a.faces + b.faces, a.collapses + b.collapses, std::max(a.error, b.error)};
-            });
-        mesh_.face_count -= sum.faces;
-        max_error_ = std::max(max_error_, sum.error);
-        return sum.collapses;
-    }
-
-    /// Returns the number of faces removed. Writes to the two stars only, and marks around them.
-    std::size_t collapse(std::uint32_t v, double& error) {
-        const std::uint32_t w = candidates_[v].partner;
-        const Placement placement = place_collapsed(mesh_, v, w);
-        const std::size_t removed = try_collapse(mesh_, v, w, placement, keep_shape_);
-        if (removed == 0) {
-            ban(v, w);
-            return 0;
-        }
-        error = placement.area > 0 ? std::sqrt(placement.quadric_error / placement.area) : 0;
-        changed_[v] = round_;
-        mark(v);
-        for (std::uint32_t c = mesh_.first_corner[v]; c != none; c = mesh_.next_corner[c]) {
-            const std::uint32_t f = corner_face(c);
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                bans_[3 * f + k] = 0;
-                mark(mesh_.faces[f][k]);
+    void collapse_whole() {
+        keep_in_one_piece(mesh_, alive_, pieces_);
+        Piece piece;
+        piece.load(mesh_, pieces_, 0);
+        for (const bool keep_shape : {true, false}) {
+            // Refused edges get another chance as long as anything around them may have changed.
+            for (std::size_t collapses = 1; collapses > 0 && piece.face_count() > target_ && !stopped_();) {
+                const std::size_t wanted = (piece.face_count() - target_ + 1) / 2;
+                const float cost = piece.cost_of_rank(8 * wanted);
+                collapses = piece.collapse({cost, target_, keep_shape}, stopped_);
+                if (collapses == 0 && cost < any_cost)
+                    collapses = piece.collapse({any_cost, target_, keep_shape}, stopped_);
             }
         }
-        return removed;
+        std::vector<std::uint32_t> left;
+        piece.store(mesh_, left);
+        alive_ = std::move(left);
+        max_error_ = std::max(max_error_, piece.max_error());
     }
 
-    void mark(std::uint32_t v) { std::atomic_ref<std::uint32_t>(dirty_[v]).store(round_, std::memory_order_relaxed); }
-
-    void ban(std::uint32_t v, std::uint32_t w) {
-        for (std::uint32_t c = mesh_.first_corner[v]; c != none; c = mesh_.next_corner[c]) {
-            const std::uint32_t f = corner_face(c), k = c - 3 * f;
-            if (mesh_.faces[f][(k + 1) % 3] == w) bans_[c] |= ban_next;
-            if (mesh_.faces[f][(k + 2) % 3] == w) bans_[c] |= ban_previous;
+    /// The cost of collapses that leaves about this share of the faces, from the cheapest edges of a sample of them. On
+    /// a curved surface costs grow with the cube of the area that a face stands for.
+    float cost_that_leaves(double share) const {
+        const std::size_t samples = std::min(cost_samples, alive_.size());
+        std::vector<double> roots(samples);
+        runtime::parallel_for(samples, 256, [&](std::size_t i) {
+            const Face& f = mesh_.faces[alive_[i * alive_.size() / samples]];
+            double least = std::numeric_limits<double>::max();
+            for (std::size_t k = 0; k < 3; ++k)
+                least = std::min(least, place_collapsed(mesh_, f[k], f[(k + 1) % 3]).cost);
+            roots[i] = std::cbrt(std::max(least, 0.0));
+        });
+        const auto share_left = [&](double root) {
+            double sum = 0;
+            for (const double r : roots) sum += r < root ? r / root : 1;
+            return sum / static_cast<double>(samples);
+        };
+        double low = 0, high = std::cbrt(static_cast<double>(any_cost));
+        for (int step = 0; step < 200 && high > low * 1.001; ++step) {
+            // In steps of the exponent: costs range over dozens of powers of ten.
+            const double middle = low > 0 ? std::sqrt(low * high) : high * 1e-3;
+            if (share_left(middle) > share) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+            if (high < 1e-15) break;
         }
-        has_ban_[v] = 1;
-        mark(v);
+        return static_cast<float>(std::min(high * high * high, static_cast<double>(any_cost)));
     }
 
     CollapseMesh& mesh_;
     std::size_t target_;
     const std::function<bool()>& stopped_;
-    std::vector<std::uint32_t> live_;
-    std::size_t dead_ = 0;  ///< entries of live_ that are not
-    std::vector<Candidate> candidates_;
-    std::vector<std::uint32_t> changed_, dirty_;  ///< round in which a vertex, or one next to it, was collapsed into
-    std::vector<std::uint8_t> has_ban_, bans_;
-    std::vector<std::uint64_t> vertex_claims_, face_claims_;  ///< the lowest key of a rival that wants it
-    std::vector<float> sample_;
-    std::uint32_t round_ = 0;
-    bool evaluate_all_ = true, keep_shape_ = true;
+    std::vector<std::uint32_t> alive_;
+    Pieces pieces_;
+    runtime::PerThread<Piece> workspace_;
     double max_error_ = 0;
 };
 
@@ -333,10 +151,14 @@ Decimated identity(std::span<const Vec3> positions, std::span<const Face> faces)
 std::vector<std::uint32_t> extract(const CollapseMesh& mesh, std::span<const Vec3> input, const Frame& frame,
                                    Decimated& result) {
     std::vector<std::uint32_t> face_number(mesh.faces.size(), none), vertex_number(mesh.vertices.size(), none);
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+        if (!mesh.alive(static_cast<std::uint32_t>(i))) continue;
+        for (const std::uint32_t v : mesh.faces[i]) vertex_number[v] = 0;
+    }
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        if (mesh.dead_vertex(static_cast<std::uint32_t>(v)) || mesh.valence[v] == 0) continue;
+        if (vertex_number[v] == none) continue;
         vertex_number[v] = static_cast<std::uint32_t>(result.positions.size());
-        const std::uint32_t source = mesh.source[v];
+        const std::uint32_t source = mesh.vertices[v].source;
         result.positions.push_back(source != none ? input[source] : frame.to_input(mesh.vertices[v].position));
     }
     for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
