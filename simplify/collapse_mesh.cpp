@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t grain = 1024;
 /// A border may give way only for a hundred times the error that a surface may; a crease is held by its faces already.
 constexpr double border_weight = 100, crease_weight = 1;
-/// Among collapses of the same error the shortest edge first: an error of 1e-3 of the edge's length counts as none.
-constexpr double length_weight = 1e-6;
 /// Faces may turn by 78° in a collapse.
 constexpr double smallest_turn_cosine = 0.2;
 /// Twice the area over the square of the longest edge; .87 in an equilateral triangle.
@@ -39,6 +37,9 @@ Frame box_frame(std::span<const Vec3> positions) {
     return {low * 0.5 + high * 0.5, scale};
 }
 
+/// Vertices of more faces are sorted.
+constexpr std::size_t max_regular = 16;
+
 /// What the build needs of one vertex; kept between vertices to spare allocations.
 class VertexBuilder {
   public:
@@ -60,6 +61,7 @@ class VertexBuilder {
             quadric.area += areas_[f];
         }
         mesh_.vertices[v].valence = corners;
+        if (build_regular(quadric, v)) return;
         std::sort(sides_.begin(), sides_.end(), [](const Side& s, const Side& t) {
             return s.neighbor != t.neighbor
                        ? s.neighbor < t.neighbor
@@ -82,10 +84,7 @@ class VertexBuilder {
                     flags |= vertex_irregular;
                     cosine = -cosine;
                 }
-                if (cosine < crease_cosine_ && areas_[s.face] > 0 && areas_[t.face] > 0) {
-                    hold_edge(quadric, v, s, crease_weight);
-                    hold_edge(quadric, v, t, crease_weight);
-                }
+                hold_crease(quadric, v, s, t, cosine);
                 if (join(s.corner, t.corner)) --fans;
             } else {
                 flags |= vertex_locked | vertex_irregular;
@@ -102,6 +101,38 @@ class VertexBuilder {
         std::uint32_t neighbor, corner, face;
         bool outgoing;
     };
+
+    /// The common case, without sorting: the faces go once around v.
+    bool build_regular(ErrorQuadric& quadric, std::uint32_t v) {
+        const std::size_t corners = sides_.size() / 2;
+        if (corners < 3 || corners > max_regular) return false;
+        const auto outgoing = [&](std::size_t i) -> const Side& { return sides_[2 * i]; };
+        const auto incoming = [&](std::size_t i) -> const Side& { return sides_[2 * i + 1]; };
+        std::size_t at = 0;
+        ErrorQuadric held = quadric;
+        for (std::size_t step = 1; step <= corners; ++step) {
+            // The face that goes on where this one ends, and no second one that ends there too.
+            std::size_t next = corners, others = 0;
+            for (std::size_t j = 0; j < corners; ++j) {
+                if (incoming(j).neighbor == outgoing(at).neighbor) next = j, ++others;
+                if (outgoing(j).neighbor == outgoing(at).neighbor) ++others;
+            }
+            if (next == corners || others != 2 || (next == 0) != (step == corners)) return false;
+            const Side &s = outgoing(at), &t = incoming(next);
+            hold_crease(held, v, s, t, dot(normals_[s.face], normals_[t.face]));
+            at = next;
+        }
+        mesh_.vertices[v].flags = 0;
+        mesh_.vertices[v].quadric = held;
+        return true;
+    }
+
+    void hold_crease(ErrorQuadric& quadric, std::uint32_t v, const Side& s, const Side& t, double cosine) const {
+        if (cosine < crease_cosine_ && areas_[s.face] > 0 && areas_[t.face] > 0) {
+            hold_edge(quadric, v, s, crease_weight);
+            hold_edge(quadric, v, t, crease_weight);
+        }
+    }
 
     void hold_edge(ErrorQuadric& quadric, std::uint32_t v, const Side& side, double weight) const {
         const Vec3 edge = mesh_.vertices[side.neighbor].position - mesh_.vertices[v].position;
@@ -203,9 +234,12 @@ bool link_condition(const CollapseMesh& mesh, std::uint32_t v, std::uint32_t w, 
     return sv.faces_with(edge.apex[0]) > 1 || sw.faces_with(edge.apex[0]) > 1;  // else the triangle stands alone
 }
 
-double shape(const Vec3& p, const Vec3& q, const Vec3& r, double doubled_area) {
-    const double longest = std::max({squared_norm(q - p), squared_norm(r - q), squared_norm(p - r)});
-    return longest > 0 ? doubled_area / longest : 0;
+double longest_squared(const Vec3& p, const Vec3& q, const Vec3& r) {
+    return std::max({squared_norm(q - p), squared_norm(r - q), squared_norm(p - r)});
+}
+
+double shape(double squared_doubled_area, double longest_squared) {
+    return longest_squared > 0 ? std::sqrt(squared_doubled_area) / longest_squared : 0;
 }
 
 /// May the faces of `star` that stay follow their vertex from `from` to `to`?
@@ -219,9 +253,11 @@ bool faces_follow(const CollapseMesh& mesh, const Star& star, std::uint32_t othe
         const double d = dot(before, after);
         if (b2 > 0 && !(d > 0 && d * d > smallest_turn_cosine * smallest_turn_cosine * a2 * b2)) return false;
         if (keep_shape) {
-            const double shape_after = shape(to, q, r, std::sqrt(a2));
-            if (!(shape_after >= sliver_shape) && !(shape_after >= 0.5 * shape(from, q, r, std::sqrt(b2))))
+            const double longest = longest_squared(to, q, r);
+            if (!(a2 >= sliver_shape * sliver_shape * longest * longest) &&
+                !(shape(a2, longest) >= 0.5 * shape(b2, longest_squared(from, q, r)))) {
                 return false;
+            }
         }
     }
     return true;
@@ -326,9 +362,9 @@ std::size_t try_collapse(CollapseMesh& mesh, std::uint32_t v, std::uint32_t w, c
         heir[i] = left == none ? right : left;
         if (left != none && right != none) {
             const Vec3 n = mesh.area_vector(mesh.faces[edge.face[i]]);
-            const Vec3 l = normalized(mesh.area_vector(mesh.faces[left]));
-            const Vec3 r = normalized(mesh.area_vector(mesh.faces[right]));
-            if (dot(n, r) > dot(n, l)) heir[i] = right;
+            const Vec3 l = mesh.area_vector(mesh.faces[left]), r = mesh.area_vector(mesh.faces[right]);
+            const double nl = dot(n, l), nr = dot(n, r);  // cosines compared by their squares, times those of lengths
+            if (nr * std::abs(nr) * squared_norm(l) > nl * std::abs(nl) * squared_norm(r)) heir[i] = right;
         }
     }
     for (std::size_t i = 0; i < edge.count; ++i) {

@@ -18,6 +18,8 @@ using Face = std::array<std::uint32_t, 3>;
 inline constexpr std::uint32_t none = 0xffffffffU;
 /// Vertices of more faces take no part in a collapse: it bounds the work of one, whatever the input.
 inline constexpr std::size_t max_valence = 96;
+/// Among collapses of the same error the shortest edge first: an error of 1e-3 of the edge's length counts as none.
+inline constexpr double length_weight = 1e-6;
 
 enum VertexFlag : std::uint8_t {
     vertex_border = 1,     ///< moves along its border only

@@ -66,9 +66,9 @@ class Decimator {
             Piece& piece = workspace_.local();
             piece.load(mesh_, pieces_, static_cast<std::uint32_t>(i));
             PieceLimits own = limits;
-            // Whatever the costs, all together stay above the target.
-            own.fewest_faces =
-                static_cast<std::size_t>(std::ceil(target / count * static_cast<double>(piece.face_count())));
+            // Whatever the costs, all together stay above the target. (A collapse removes two faces.)
+            const double own_count = static_cast<double>(piece.face_count());
+            own.fewest_faces = static_cast<std::size_t>(std::ceil(target / count * own_count)) + 1;
             if (!stopped_()) piece.collapse(own, stopped_);
             piece.store(mesh_, survivors[i]);
             errors[i] = piece.max_error();

@@ -10,7 +10,6 @@
 namespace quadseg::simplify {
 namespace {
 
-constexpr float unusable = std::numeric_limits<float>::infinity();
 constexpr std::size_t rating_grain = 8192;
 /// Edges taken from the queue between two questions whether to stop.
 constexpr std::size_t poll_interval = 64;
@@ -70,28 +69,31 @@ bool Piece::may_collapse(std::uint32_t v, std::uint32_t w) const {
 }
 
 void Piece::rate_all() {
-    costs_.resize(3 * local_.faces.size());
+    const std::size_t blocks = (local_.faces.size() + rating_grain - 1) / rating_grain;
+    if (rated_.size() < blocks) rated_.resize(blocks);
+    for (auto& part : rated_) part.clear();
     runtime::parallel_blocks(local_.faces.size(), rating_grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<RatedEdge>& edges = rated_[begin / rating_grain];
         for (std::size_t i = begin; i < end; ++i) {
             const Face& f = local_.faces[i];
+            if (f[0] == none) continue;
             for (std::size_t k = 0; k < 3; ++k) {
-                float& cost = costs_[3 * i + k];
-                cost = unusable;
-                if (f[0] == none) continue;
                 const std::uint32_t v = f[k], w = f[k == 2 ? 0 : k + 1];
                 // An edge of two faces is met once in either direction.
-                const bool once = (local_.vertices[v].flags & local_.vertices[w].flags & vertex_irregular) == 0;
-                if ((once && w < v) || !may_collapse(v, w)) continue;
-                cost = static_cast<float>(place_collapsed(local_, v, w).cost);
+                const bool twice = (local_.vertices[v].flags & local_.vertices[w].flags & vertex_irregular) == 0;
+                if ((!twice || v < w) && may_collapse(v, w)) edges.push_back({v, w, 0});
             }
         }
+        rate_edges(local_, edges);
     });
 }
 
 float Piece::cost_of_rank(std::size_t k) {
     rate_all();
     std::vector<float> usable;
-    std::copy_if(costs_.begin(), costs_.end(), std::back_inserter(usable), [](float c) { return c < unusable; });
+    for (const auto& part : rated_) {
+        for (const RatedEdge& edge : part) usable.push_back(edge.cost);
+    }
     if (k >= usable.size()) return std::numeric_limits<float>::max();
     const auto nth = usable.begin() + static_cast<std::ptrdiff_t>(k);
     std::nth_element(usable.begin(), nth, usable.end());
@@ -100,27 +102,29 @@ float Piece::cost_of_rank(std::size_t k) {
 
 void Piece::rate_around(std::uint32_t v, float largest_cost) {
     const bool regular = (local_.vertices[v].flags & vertex_irregular) == 0;
-    const auto rate = [&](std::uint32_t w) {
-        if (!may_collapse(v, w)) return;
-        const auto cost = static_cast<float>(place_collapsed(local_, v, w).cost);
-        if (cost <= largest_cost) queue_.push(cost, {v, w, stamp(v, w)});
+    around_.clear();
+    const auto add = [&](std::uint32_t w) {
+        if (may_collapse(v, w)) around_.push_back({v, w, 0});
     };
     for (std::uint32_t c = local_.first_corner[v]; c != none; c = local_.next_corner[c]) {
         const std::uint32_t f = corner_face(c), k = c - 3 * f;
         const Face& face = local_.faces[f];
-        rate(face[k == 2 ? 0 : k + 1]);
-        if (!regular) rate(face[k == 0 ? 2 : k - 1]);
+        add(face[k == 2 ? 0 : k + 1]);
+        if (!regular) add(face[k == 0 ? 2 : k - 1]);
     }
+    rate_edges(local_, around_);
+    for (const RatedEdge& edge : around_) enqueue(edge, largest_cost);
+}
+
+void Piece::enqueue(const RatedEdge& edge, float largest_cost) {
+    if (edge.cost <= largest_cost) queue_.push(edge.cost, {edge.v, edge.w, stamp(edge.v, edge.w)});
 }
 
 std::size_t Piece::collapse(const PieceLimits& limits, const std::function<bool()>& stopped) {
     rate_all();
     queue_.clear();
-    for (std::size_t c = 0; c < costs_.size(); ++c) {
-        if (!(costs_[c] <= limits.largest_cost)) continue;
-        const Face& f = local_.faces[c / 3];
-        const std::uint32_t v = f[c % 3], w = f[(c + 1) % 3];
-        queue_.push(costs_[c], {v, w, stamp(v, w)});
+    for (const auto& part : rated_) {
+        for (const RatedEdge& edge : part) enqueue(edge, limits.largest_cost);
     }
     std::size_t collapses = 0;
     QueuedEdge edge;

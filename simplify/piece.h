@@ -4,6 +4,7 @@
 #include "simplify/bucket_queue.h"
 #include "simplify/collapse_mesh.h"
 #include "simplify/pieces.h"
+#include "simplify/rating.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -38,13 +39,15 @@ class Piece {
     bool may_collapse(std::uint32_t v, std::uint32_t w) const;
     void rate_all();
     void rate_around(std::uint32_t v, float largest_cost);
+    void enqueue(const RatedEdge& edge, float largest_cost);
     std::uint32_t stamp(std::uint32_t v, std::uint32_t w) const { return stamps_[v] + stamps_[w]; }
 
     CollapseMesh local_;
     std::vector<std::uint32_t> global_vertex_, global_face_;
-    std::vector<std::uint32_t> slots_;   ///< hash table of local vertices
-    std::vector<std::uint32_t> stamps_;  ///< of a vertex: the collapses into it
-    std::vector<float> costs_;           ///< of the edge from every corner to the next, rate_all()'s
+    std::vector<std::uint32_t> slots_;           ///< hash table of local vertices
+    std::vector<std::uint32_t> stamps_;          ///< of a vertex: the collapses into it
+    std::vector<std::vector<RatedEdge>> rated_;  ///< by rate_all(), a list for every block of faces
+    std::vector<RatedEdge> around_;
     BucketQueue queue_;
     double max_error_ = 0;
 };

@@ -67,10 +67,8 @@ void sort_along_curve(const CollapseMesh& mesh, std::size_t phase, std::vector<s
     const Vec3 shift{fraction(0.8191725134), fraction(0.6710436067), fraction(0.5497004779)};
     std::vector<Keyed> keyed(alive.size()), other(alive.size());
     runtime::parallel_for(alive.size(), part, [&](std::size_t i) {
-        const Face& f = mesh.faces[alive[i]];
-        const Vec3 centroid =
-            (mesh.vertices[f[0]].position + mesh.vertices[f[1]].position + mesh.vertices[f[2]].position) / 3.0;
-        keyed[i] = {morton_key(centroid, shift), alive[i]};
+        const std::uint32_t f = alive[i];
+        keyed[i] = {morton_key(mesh.vertices[mesh.faces[f][0]].position, shift), f};  // any point of it will do
     });
     for (int pass = 0; pass < passes; ++pass) {
         radix_pass(keyed, other, pass * digit_bits);
