@@ -236,7 +236,10 @@ class Finisher {
 
   private:
     /// Neither verified on its vertices nor to be judged by a known noise.
-    bool by_energy(std::size_t r) const { return !(flow_.noise > 0) && r >= flow_.surfaces.size(); }
+    bool by_energy(std::size_t r) const {
+        return (r < flow_.faceted.size() && flow_.faceted[r] != 0) ||
+               (!(flow_.noise > 0) && r >= flow_.surfaces.size());
+    }
 
     const std::uint32_t* faces(std::size_t r) const { return regions_.face.data() + regions_.begin[r]; }
 
@@ -339,13 +342,13 @@ class Finisher {
         const Surface own = named(result);
         result.surface = own;
         if (paper_ && (options_.method != Method::quadric || result.quadric.planar())) return;
-        const bool free_form = !paper_ && r < flow_.surfaces.size();
+        const bool free_form = !paper_ && r < flow_.surfaces.size() && !by_energy(r);
         const RegionSample few = sample.thinned(by_energy(r) ? energy_choice_points : choice_points);
         const double rounding = 1e-12 * result.extent;
         const double floor = std::max({noise_margin * flow_.noise, rounding, 3 * precision_});
         const double tolerance = free_form ? std::max(floor, exact_tolerance) : floor;
         // The noise is known: what is farther off is free-form.
-        const bool judged = free_form || (!paper_ && flow_.noise > 0);
+        const bool judged = free_form || (!paper_ && flow_.noise > 0 && !by_energy(r));
         // The paper's proxies are quadrics.
         TypeChoice choice(few.all(), own, floor, !paper_, !paper_ && !free_form,
                           by_energy(r) ? energy_choice_steps : choice_steps);

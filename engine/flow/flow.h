@@ -32,6 +32,9 @@ struct FlowResult {
     /// Empty, or one a region: the surface that the flow verified on the vertices (unit frame); type freeform: none, to
     /// be chosen.
     std::vector<Surface> surfaces;
+    /// Empty, or one a region: 1 where no vertex lies on a surface (flow/faceted.h), so that the type is chosen by what
+    /// explains them best.
+    std::vector<std::uint8_t> faceted;
     /// Empty, or one a region: the complete fits to its faces, which the flow ended with.
     std::vector<quadric::RegionFit> fits;
     double coarse_seconds = 0;  ///< spent on the simplified mesh

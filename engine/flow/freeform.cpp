@@ -1,6 +1,7 @@
 #include "flow/freeform.h"
 
 #include "flow/curvature_patches.h"
+#include "flow/faceted.h"
 #include "flow/fast.h"
 #include "mesh/connected.h"
 
@@ -79,18 +80,32 @@ std::vector<std::uint8_t> faces_where(std::size_t count, const auto& wanted) {
     return faces;
 }
 
+/// A flag a region: most of its faces are faceted.
+std::vector<std::uint8_t> mostly_faceted(const FlowResult& grouped, const std::vector<std::uint8_t>& faceted) {
+    std::vector<std::int64_t> balance(grouped.regions, 0);
+    for (std::size_t f = 0; f < faceted.size(); ++f) {
+        const std::int32_t label = grouped.labels[f];
+        if (label >= 0 && label < static_cast<std::int32_t>(balance.size()))
+            balance[static_cast<std::size_t>(label)] += faceted[f] != 0 ? 1 : -1;
+    }
+    std::vector<std::uint8_t> flags(balance.size());
+    for (std::size_t r = 0; r < flags.size(); ++r) flags[r] = balance[r] > 0 ? 1 : 0;
+    return flags;
+}
+
 }  // namespace
 
-FlowResult group_freeform(const FlowInput& input, const partition::Labels& explained) {
+FlowResult group_freeform(const FlowInput& input, const std::vector<Surface>& surfaces, partition::Labels& explained) {
     const mesh::WorkMesh& mesh = input.mesh;
     const mesh::FeatureEdges creases =
         input.features ? *input.features : mesh::find_feature_edges(mesh, crease_degrees, input.control);
+    const std::vector<std::uint8_t> faceted = find_faceted(input, creases, surfaces, explained);
     PatchRules rules;
     rules.jump /= std::sqrt(input.options.detail);
     FlowResult result;
     {
         const std::vector<std::uint8_t> free =
-            faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0; });
+            faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0 && faceted[f] == 0; });
         const CurvatureField field = estimate_curvatures(mesh, free, creases, input.control);
         const std::vector<std::uint8_t> regular = find_regular(mesh, creases, field, rules.jump, input.control);
         result.labels = curvature_patches(mesh, creases, field, regular, rules, input.control);
@@ -111,7 +126,9 @@ FlowResult group_freeform(const FlowInput& input, const partition::Labels& expla
             grouped.labels[f] =
                 result.labels[f] < 0 ? -1 : result.labels[f] + static_cast<std::int32_t>(grouped.regions);
     }
+    grouped.faceted = mostly_faceted(grouped, faceted);
     grouped.regions += result.regions;
+    grouped.faceted.resize(grouped.regions, 0);
     grouped.fits.clear();
     return grouped;
 }

@@ -7,7 +7,8 @@
 
 namespace quadseg::flow {
 
-/// Groups the faces of label −1 of `explained`; the others come out −1. Throws Stopped.
-FlowResult group_freeform(const FlowInput& input, const partition::Labels& explained);
+/// Groups the faces of label −1 of `explained`; the others come out −1. Small regions amid faceted parts
+/// (flow/faceted.h) become −1 in `explained` first. `surfaces`: one a label. Throws Stopped.
+FlowResult group_freeform(const FlowInput& input, const std::vector<Surface>& surfaces, partition::Labels& explained);
 
 }  // namespace quadseg::flow

@@ -1,6 +1,7 @@
 #include "flow/polygons.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -52,12 +53,16 @@ void unify_polygons(const mesh::WorkMesh& mesh, FlowResult& flow) {
     flow.fits.clear();
     const partition::Labels before = flow.labels;
     flow.regions = partition::split_disconnected(mesh, flow.labels);
-    if (flow.surfaces.empty()) return;
-    std::vector<Surface> surfaces(flow.regions);
-    for (std::size_t f = before.size(); f-- > 0;) {
-        surfaces[static_cast<std::size_t>(flow.labels[f])] = flow.surfaces[static_cast<std::size_t>(before[f])];
-    }
-    flow.surfaces = std::move(surfaces);
+    const auto hand_on = [&](auto& of_regions) {
+        if (of_regions.empty()) return;
+        std::remove_reference_t<decltype(of_regions)> handed_on(flow.regions);
+        for (std::size_t f = before.size(); f-- > 0;) {
+            handed_on[static_cast<std::size_t>(flow.labels[f])] = of_regions[static_cast<std::size_t>(before[f])];
+        }
+        of_regions = std::move(handed_on);
+    };
+    hand_on(flow.surfaces);
+    hand_on(flow.faceted);
 }
 
 }  // namespace quadseg::flow

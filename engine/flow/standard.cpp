@@ -11,6 +11,21 @@
 
 namespace quadseg::flow {
 
+namespace {
+
+/// Numbers regions by first face; surfaces of regions that have no faces any more go.
+void drop_empty_regions(FlowResult& result) {
+    std::vector<std::int32_t> renumbered;
+    result.regions = partition::compact(result.labels, renumbered);
+    std::vector<Surface> surfaces(result.regions);
+    for (std::size_t r = 0; r < renumbered.size(); ++r) {
+        if (renumbered[r] >= 0) surfaces[static_cast<std::size_t>(renumbered[r])] = result.surfaces[r];
+    }
+    result.surfaces = std::move(surfaces);
+}
+
+}  // namespace
+
 FlowResult run_standard(const FlowInput& input) {
     // A wanted number or tolerance is an energy question; only the choice of their own makes surfaces the question.
     if (input.options.regions > 0 || input.options.tolerance > 0) return run_fast(input, fast_options(input.options));
@@ -33,7 +48,7 @@ FlowResult run_standard(const FlowInput& input) {
 
     FlowResult rest;
     try {
-        rest = group_freeform(input, result.labels);
+        rest = group_freeform(input, result.surfaces, result.labels);
     } catch (const runtime::Stopped& stopped) {
         rest.labels.resize(result.labels.size());
         std::transform(result.labels.begin(), result.labels.end(), rest.labels.begin(),
@@ -42,11 +57,15 @@ FlowResult run_standard(const FlowInput& input) {
         rest.partial = true;
         rest.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
     }
+    drop_empty_regions(result);
     const auto first = static_cast<std::int32_t>(result.regions);
     for (std::size_t f = 0; f < result.labels.size(); ++f) {
         if (result.labels[f] < 0) result.labels[f] = first + rest.labels[f];
     }
+    result.faceted.assign(result.regions, 0);
+    result.faceted.insert(result.faceted.end(), rest.faceted.begin(), rest.faceted.end());
     result.regions += rest.regions;
+    result.faceted.resize(result.regions, 0);
     Surface freeform;
     freeform.type = SurfaceType::freeform;
     result.surfaces.resize(result.regions, freeform);

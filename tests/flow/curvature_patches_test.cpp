@@ -105,8 +105,8 @@ TEST(Freeform, RoughSheetIsGroupedByEnergyIntoFewPatches) {
     const mesh::WorkMesh mesh = work_mesh(sheet(48, rough));
     const Options options;
     const runtime::RunControl control(nullptr);
-    const Labels nothing(mesh.face_count(), -1);
-    const flow::FlowResult result = flow::group_freeform({mesh, nullptr, options, control}, nothing);
+    Labels nothing(mesh.face_count(), -1);
+    const flow::FlowResult result = flow::group_freeform({mesh, nullptr, options, control}, {}, nothing);
     EXPECT_LE(result.regions, 40U);
     for (const std::int32_t label : result.labels) {
         EXPECT_GE(label, 0);
@@ -119,8 +119,8 @@ TEST(Freeform, ExplainedFacesStayOut) {
     const Options options;
     const runtime::RunControl control(nullptr);
     Labels explained(mesh.face_count(), -1);
-    for (std::size_t f = 0; f < explained.size() / 2; ++f) explained[f] = 7;
-    const flow::FlowResult result = flow::group_freeform({mesh, nullptr, options, control}, explained);
+    for (std::size_t f = 0; f < explained.size() / 2; ++f) explained[f] = 0;
+    const flow::FlowResult result = flow::group_freeform({mesh, nullptr, options, control}, {Surface{}}, explained);
     for (std::size_t f = 0; f < explained.size(); ++f) EXPECT_EQ(result.labels[f] < 0, explained[f] >= 0);
 }
 
