@@ -13,6 +13,9 @@ namespace quadseg::flow {
 
 namespace {
 
+/// Share of the area below which exact surfaces are accidents: the mesh is one without.
+constexpr double little = 0.1;
+
 /// Numbers regions by first face; surfaces of regions that have no faces any more go.
 void drop_empty_regions(FlowResult& result) {
     std::vector<std::int32_t> renumbered;
@@ -65,6 +68,7 @@ FlowResult run_standard(const FlowInput& input) {
     result.faceted.assign(result.regions, 0);
     result.faceted.insert(result.faceted.end(), rest.faceted.begin(), rest.faceted.end());
     result.regions += rest.regions;
+    if (exact.covered < little) std::fill(result.faceted.begin() + first, result.faceted.end(), std::uint8_t{1});
     result.faceted.resize(result.regions, 0);
     Surface freeform;
     freeform.type = SurfaceType::freeform;
