@@ -71,6 +71,23 @@ TEST(Faceted, ARemeshedCylinderIsOneRegion) {
     }
 }
 
+TEST(Standard, AMeshWithoutExactSurfacesIsNamedByWhatExplainsIt) {
+    test::Shape dented = test::capped_cylinder(120, 40);
+    for (std::size_t v = 0; v + 1 < dented.positions.size() / 3; ++v) {  // not the middle of the lid
+        double* p = &dented.positions[3 * v];
+        const double t = std::atan2(p[1], p[0]), factor = 1 + 5e-3 * std::sin(5 * t) * std::sin(4 * p[2]);
+        p[0] *= factor;
+        p[1] *= factor;
+        p[2] += 5e-3 * std::sin(5 * p[0]) * std::cos(4 * p[1]);
+    }
+    const Segmentation result = segment(dented.view());
+    double named = 0;
+    for (const Region& region : result.regions) {
+        if (region.surface.type != SurfaceType::freeform) named += region.area;
+    }
+    EXPECT_GT(named, 0.9 * result.input.area);
+}
+
 TEST(Faceted, SidesThatMeetAtCreasesArePlanes) {
     const Segmentation result = segment(remeshed_prism(6, 12, 12).view());
     ASSERT_EQ(result.regions.size(), 7U);
