@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t grain = 2048;
 /// A turned normal counts as much as this share of the simplified face's size (squared: of its area).
 constexpr double normal_weight = 0.5;
-constexpr int longest_walk = 32;
+constexpr int longest_walk = 32, longest_short_cut = 6;
 
 double squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     // Ericson, Real-Time Collision Detection, section 5.1.5: by Voronoi regions.
@@ -47,8 +47,7 @@ class Target {
           begin_(positions.size() + 1, 0),
           around_(3 * faces.size()),
           across_(faces.size(), Face{none, none, none}),
-          normals_(faces.size()),
-          areas_(faces.size()) {
+          prisms_(faces.size()) {
         for (const Face& f : faces) {
             for (const std::uint32_t v : f) ++begin_[v + 1];
         }
@@ -60,8 +59,7 @@ class Target {
         runtime::parallel_for(faces.size(), grain, [&](std::size_t i) {
             const Face& f = faces[i];
             const Vec3 doubled = cross(positions[f[1]] - positions[f[0]], positions[f[2]] - positions[f[0]]);
-            areas_[i] = 0.5 * norm(doubled);
-            normals_[i] = normalized(doubled);
+            prisms_[i] = prism(f, doubled);
             for (std::size_t k = 0; k < 3; ++k) {
                 for_faces_around(f[k], [&](std::uint32_t g) {
                     const Face& other = faces[g];
@@ -74,12 +72,19 @@ class Target {
 
     /// The face that the walk from f ends at: no neighbour has a smaller misfit.
     std::uint32_t nearest(const Vec3& point, const Vec3& normal, std::uint32_t f) const {
-        if (settled(point, normal, f)) return f;
+        // Most faces are there already, or a step or two away over the edge that the point lies beyond.
+        std::uint32_t at = f;
+        for (int step = 0; step < longest_short_cut && at != none; ++step) {
+            const int edge = edge_crossed(point, normal, at);
+            if (edge == inside) return at;
+            if (edge == turned) break;
+            at = across_[at][static_cast<std::size_t>(edge)];
+        }
         double best = misfit(point, normal, f);
         for (int step = 0; step < longest_walk; ++step) {
             std::uint32_t next = f;
             const auto try_face = [&](std::uint32_t g) {
-                if (g == f) return;
+                if (g == f || least_misfit(point, normal, g) > best) return;
                 const double m = misfit(point, normal, g);
                 if (m < best || (m == best && g < next)) {
                     best = m;
@@ -90,7 +95,7 @@ class Target {
                 if (g != none) try_face(g);
             }
             // Neither over the face nor better across an edge: the right one may touch at a corner only.
-            if (next == f && !settled(point, normal, f)) {
+            if (next == f && edge_crossed(point, normal, f) != inside) {
                 for (const std::uint32_t v : faces_[f]) for_faces_around(v, try_face);
             }
             if (next == f) break;
@@ -105,26 +110,58 @@ class Target {
         const std::uint32_t end = std::min<std::uint32_t>(begin_[v + 1], begin_[v] + max_valence);
         for (std::uint32_t i = begin_[v]; i < end; ++i) visit(around_[i]);
     }
+    /// No more than misfit(), but for rounding: from the plane of the face.
+    double least_misfit(const Vec3& point, const Vec3& normal, std::uint32_t f) const {
+        const Prism& p = prisms_[f];
+        const double height = dot(p.normal, point - positions_[faces_[f][0]]);
+        return (1 - 1e-6) * height * height + normal_weight * p.area * (1 - dot(normal, p.normal));
+    }
     double misfit(const Vec3& point, const Vec3& normal, std::uint32_t f) const {
         const Face& face = faces_[f];
         return squared_distance(point, positions_[face[0]], positions_[face[1]], positions_[face[2]]) +
-               normal_weight * areas_[f] * (1 - dot(normal, normals_[f]));
+               normal_weight * prisms_[f].area * (1 - dot(normal, prisms_[f].normal));
     }
-    /// The point lies over the face and the normals agree: no neighbour can do better by more than a hair.
-    bool settled(const Vec3& point, const Vec3& normal, std::uint32_t f) const {
-        if (!(dot(normal, normals_[f]) > 0.9)) return false;
-        const Vec3 &a = positions_[faces_[f][0]], &b = positions_[faces_[f][1]], &c = positions_[faces_[f][2]];
-        const Vec3& n = normals_[f];
-        return dot(cross(b - a, point - a), n) >= 0 && dot(cross(c - b, point - b), n) >= 0 &&
-               dot(cross(a - c, point - c), n) >= 0;
+    static constexpr int inside = -1, turned = -2;
+    /// What decides whether a point lies over a face: planes through its edges, upright on it.
+    struct Prism {
+        Vec3 normal;
+        double area = 0;
+        std::array<Vec3, 3> inward;  ///< of edge k = (v[k], v[(k+1)%3])
+        std::array<double, 3> offset{};
+    };
+    Prism prism(const Face& f, const Vec3& doubled) const {
+        Prism p;
+        p.area = 0.5 * norm(doubled);
+        p.normal = normalized(doubled);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 &a = positions_[f[k]], &b = positions_[f[(k + 1) % 3]];
+            p.inward[k] = normalized(cross(p.normal, b - a));
+            p.offset[k] = dot(p.inward[k], a);
+        }
+        return p;
+    }
+    /// `inside`: the point lies over the face and the normals agree, so that no neighbour can do better by more than a
+    /// hair. `turned`: they do not agree. Else the edge that it is farthest beyond.
+    int edge_crossed(const Vec3& point, const Vec3& normal, std::uint32_t f) const {
+        const Prism& p = prisms_[f];
+        if (!(dot(normal, p.normal) > 0.9)) return turned;
+        int edge = inside;
+        double least = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double d = dot(p.inward[k], point) - p.offset[k];
+            if (d < least) {
+                least = d;
+                edge = static_cast<int>(k);
+            }
+        }
+        return edge;
     }
 
     std::span<const Vec3> positions_;
     std::span<const Face> faces_;
     std::vector<std::uint32_t> begin_, around_;
     std::vector<Face> across_;  ///< face across edge k = (v[k], v[(k+1)%3]), or none
-    std::vector<Vec3> normals_;
-    std::vector<double> areas_;
+    std::vector<Prism> prisms_;
 };
 
 }  // namespace
