@@ -69,10 +69,17 @@ class Selector {
         const double s0 = std::max(result_.noise, 1e-11 * scene_.tolerances.diagonal);
         const double limit = std::max(30 * s0, scene_.tolerances.fit);
         const double trusted = std::max({3 * s0, 1e-9 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision});
+        // Where the coordinates are rounded the first row of a tangent neighbour may creep away too, but not all
+        // around.
+        const double precision = scene_.tolerances.precision;
+        const bool rounded = precision > 1e-9 * scene_.tolerances.diagonal;
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             const Candidate& k = candidates_[c];
-            const bool accidental = (k.median > limit && k.gap > 0.3) || (k.median > 10 * limit && k.gap > 0.1) ||
-                                    (k.gap > 0.35 && k.median > trusted) || (k.median > 20 * limit && k.gap > 0.05);
+            const bool creeps =
+                rounded && ((k.gap > 0.6 && k.median > 1.5 * precision) || (k.gap > 0.75 && k.facets <= 24));
+            const bool accidental = creeps || (k.median > limit && k.gap > 0.3) ||
+                                    (k.median > 10 * limit && k.gap > 0.1) || (k.gap > 0.35 && k.median > trusted) ||
+                                    (k.median > 20 * limit && k.gap > 0.05);
             if (accidental && k.surface.type != SurfaceType::plane) alive_[c] = 0;
         }
     }

@@ -5,6 +5,7 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
 #include <set>
@@ -84,6 +85,28 @@ TEST_P(ExactParts, TheSameAtAnyThreadCount) {
 
 INSTANTIATE_TEST_SUITE_P(Parts, ExactParts, ::testing::Values("plate", "shaft", "flange", "fillets"),
                          [](const auto& name) { return std::string(name.param); });
+
+TEST(ExactSurfaces, FewAccidentsOnASmoothSheetOfRoundedCoordinates) {
+    // Within the rounding any small patch of it is a torus; what such a patch ends in tells.
+    constexpr std::uint32_t n = 60;
+    Mesh sheet;
+    for (std::uint32_t j = 0; j <= n; ++j) {
+        for (std::uint32_t i = 0; i <= n; ++i) {
+            const double x = double(i) / n, y = double(j) / n;
+            const double z = 0.08 * std::sin(2.3 * x + 1.7 * y) * std::cos(2.1 * y - 0.7 * x);
+            for (const double v : {x, y, z}) sheet.positions.push_back(std::round(v * 1e6) / 1e6);
+        }
+    }
+    for (std::uint32_t j = 0; j < n; ++j) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t a = j * (n + 1) + i, b = a + n + 1;
+            sheet.triangles.insert(sheet.triangles.end(), {a, a + 1, b + 1, a, b + 1, b});
+        }
+    }
+    const runtime::RunControl control(nullptr);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(sheet.view(), control);
+    EXPECT_LT(find_exact_surfaces(mesh, control).covered, 0.05);
+}
 
 TEST(ExactSurfaces, StopsWhenCancelled) {
     const datasets::Generated part = datasets::generate("plate", 4000);
