@@ -23,6 +23,7 @@ double quantile(std::vector<double>& values, double q) {
 struct EdgeStatistics {
     double mean_length = 0;
     double low_angle = 0;  ///< 20 % quantile of the dihedral angles
+    double flat = 0;       ///< share of angles below a hundredth of that: of white noise .002
 };
 
 EdgeStatistics sample_edges(const mesh::WorkMesh& mesh) {
@@ -40,7 +41,12 @@ EdgeStatistics sample_edges(const mesh::WorkMesh& mesh) {
             if (squared_norm(a) > 0 && squared_norm(b) > 0) angles.push_back(angle_between(a, b));
         }
     }
-    return {count > 0 ? sum / static_cast<double>(count) : 0, quantile(angles, 0.2)};
+    EdgeStatistics edges;
+    edges.mean_length = count > 0 ? sum / static_cast<double>(count) : 0;
+    edges.low_angle = quantile(angles, 0.2);
+    const auto flat = std::count_if(angles.begin(), angles.end(), [&](double a) { return a < 0.01 * edges.low_angle; });
+    if (!angles.empty()) edges.flat = static_cast<double>(flat) / static_cast<double>(angles.size());
+    return edges;
 }
 
 /// Robust standard deviation of n·(I − S)²x, S the mean over the ring: low frequencies are gone, of white noise of
@@ -133,6 +139,7 @@ NoiseEstimate estimate_noise(const mesh::WorkMesh& mesh, const runtime::RunContr
     NoiseEstimate estimate;
     const EdgeStatistics edges = sample_edges(mesh);
     estimate.edge = edges.mean_length;
+    estimate.flat = edges.flat;
     estimate.precision = coordinate_precision(mesh);
     // Of white noise of standard deviation 1 edge the dihedral angles have 2.31; .2533 is the 20 % quantile of
     // |N(0,1)|.

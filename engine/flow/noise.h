@@ -11,9 +11,12 @@ struct NoiseEstimate {
     double sigma = 0;      ///< standard deviation of the vertices along their normals; about 0 on clean meshes
     double edge = 0;       ///< mean edge length
     double precision = 0;  ///< standard deviation of the rounding of the coordinates in the file (float32, decimals)
+    double flat = 0;       ///< share of edges that are flatter than noise leaves them
 
     /// Above this normals are of little use and every decision needs an honest price of chance.
     bool noisy() const noexcept { return sigma > 0.02 * edge; }
+    /// The roughness may be that of a coarse tessellation: some edges show no noise at all.
+    bool doubtful() const noexcept { return flat > 0.02; }
 };
 
 /// Degrees by which a region's normals may miss its surface where it is worth a merge: small on exact meshes, larger on

@@ -27,6 +27,18 @@ void drop_empty_regions(FlowResult& result) {
     result.surfaces = std::move(surfaces);
 }
 
+/// Surfaces that noise would never let through, on a good part of the mesh. Planes do not count: scans have bases.
+bool shows_exact_surfaces(const mesh::WorkMesh& mesh, const exact::ExactSurfaces& exact) {
+    constexpr double enough = 0.05;
+    double curved = 0;
+    for (std::size_t f = 0; f < exact.labels.size(); ++f) {
+        if (exact.labels[f] < 0) continue;
+        const Surface& surface = exact.surfaces[static_cast<std::size_t>(exact.labels[f])];
+        if (surface.type != SurfaceType::plane) curved += mesh.areas[f];
+    }
+    return curved > enough * mesh.total_area;
+}
+
 }  // namespace
 
 FlowResult run_standard(const FlowInput& input) {
@@ -35,8 +47,10 @@ FlowResult run_standard(const FlowInput& input) {
     exact::ExactSurfaces exact;
     try {
         const NoiseEstimate noise = estimate_noise(input.mesh, input.control);
-        if (noise.noisy()) return run_noisy(input, noise);
+        if (noise.noisy() && !noise.doubtful()) return run_noisy(input, noise);
         exact = exact::find_exact_surfaces(input.mesh, input.control);
+        const bool exact_after_all = !noise.noisy() || exact.partial || shows_exact_surfaces(input.mesh, exact);
+        if (!exact_after_all) return run_noisy(input, noise);
     } catch (const runtime::Stopped&) {
         return run_fast(input, fast_options(input.options));
     }
