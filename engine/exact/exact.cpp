@@ -114,6 +114,7 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     Explained state;
     state.region = selection.owner;
     for (const Candidate& candidate : candidates) state.surface.push_back(candidate.surface);
+    release_extruded(scene, state);
     separate_parts(scene, state);
     add_planes(scene, step, state);
     extend_to_borders(scene, step, state);

@@ -1,8 +1,14 @@
 #include "exact/release.h"
 
+#include "exact/hypothesis.h"
+#include "math/symmetric3.h"
+#include "surface/fit.h"
+
 #include <algorithm>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <span>
 
 namespace quadseg::exact {
 
@@ -96,7 +102,67 @@ std::vector<std::size_t> row_sizes(const Scene& scene, const Explained& state, c
     return size;
 }
 
+/// No parallel straight lines run along these surfaces.
+bool may_be_extruded(SurfaceType type) {
+    switch (type) {
+        case SurfaceType::sphere:
+        case SurfaceType::cone:
+        case SurfaceType::torus:
+        case SurfaceType::ellipsoid:
+        case SurfaceType::elliptic_cone:
+        case SurfaceType::elliptic_paraboloid:
+        case SurfaceType::hyperbolic_paraboloid:
+        case SurfaceType::hyperboloid_one_sheet:
+        case SurfaceType::hyperboloid_two_sheets:
+            return false;
+        default:
+            return true;
+    }
+}
+
+/// Normals all perpendicular to one direction, and not all equal.
+bool is_extruded(const Symmetric3& normals, double area) {
+    constexpr double most_tilt = 1e-5, least_turn = 1e-2;  // RMS, radians
+    const EigenSystem eigen = eigen_decomposition(normals);
+    return eigen.values[0] <= most_tilt * most_tilt * area && eigen.values[1] > least_turn * least_turn * area;
+}
+
+std::optional<Surface> cylinder_through(const Scene& scene, std::span<const std::uint32_t> faces, Marks& marks) {
+    const PatchPoints p = patch_points(scene, faces, marks);
+    const surface::SurfaceFit fit = surface::fit(SurfaceType::cylinder, {p.points, p.face_normals, {}});
+    if (!fit.ok || fit.median > scene.tolerances.fit || fit.max > scene.tolerances.trim) return std::nullopt;
+    return fit.surface;
+}
+
 }  // namespace
+
+void release_extruded(const Scene& scene, Explained& state) {
+    std::vector<Symmetric3> spread(state.surface.size());
+    std::vector<double> area(state.surface.size(), 0);
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        if (state.region[f] < 0) continue;
+        const auto r = static_cast<std::size_t>(state.region[f]);
+        spread[r].add_outer(scene.mesh.normals[f], scene.mesh.areas[f]);
+        area[r] += scene.mesh.areas[f];
+    }
+    std::vector<std::vector<std::uint32_t>> faces(state.surface.size());
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        if (state.region[f] < 0) continue;
+        const auto r = static_cast<std::size_t>(state.region[f]);
+        if (area[r] > 0 && !may_be_extruded(state.surface[r].type)) faces[r].push_back(static_cast<std::uint32_t>(f));
+    }
+    Marks marks;
+    marks.prepare(scene.mesh.face_count(), scene.mesh.vertex_count());
+    for (std::size_t r = 0; r < faces.size(); ++r) {
+        if (faces[r].empty() || !is_extruded(spread[r], area[r])) continue;
+        scene.control.check();
+        if (const std::optional<Surface> cylinder = cylinder_through(scene, faces[r], marks)) {
+            state.surface[r] = *cylinder;
+            continue;
+        }
+        for (const std::uint32_t f : faces[r]) state.region[f] = -1;
+    }
+}
 
 void release_doubtful(const Scene& scene, Explained& state) {
     const std::vector<RegionBorder> borders = measure_borders(scene, state);

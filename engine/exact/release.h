@@ -6,6 +6,10 @@
 
 namespace quadseg::exact {
 
+/// Rows of flat facets all parallel to one direction are an extruded profile: their two rims lie on spheres, cones and
+/// tori too, which is chance. Where a cylinder holds it takes their place, else the faces become free.
+void release_extruded(const Scene& scene, Explained& state);
+
 /// Planar regions that fold gently into other planar regions along most of their border are strips of a tessellation
 /// whose vertices are not on the surface (remeshed or subdivided): they become free. So do small regions amid free
 /// faces.

@@ -3,6 +3,7 @@
 #include "flow/curvature_patches.h"
 #include "flow/faceted.h"
 #include "flow/fast.h"
+#include "flow/rulings.h"
 #include "mesh/connected.h"
 
 #include <algorithm>
@@ -93,25 +94,58 @@ std::vector<std::uint8_t> mostly_faceted(const FlowResult& grouped, const std::v
     return flags;
 }
 
+/// Labels that are −1 so far.
+void add_regions(const partition::Labels& more, FlowResult& result) {
+    const auto first = static_cast<std::int32_t>(result.regions);
+    for (std::size_t f = 0; f < more.size(); ++f) {
+        if (more[f] < 0) continue;
+        result.labels[f] = first + more[f];
+        result.regions = std::max(result.regions, static_cast<std::size_t>(result.labels[f]) + 1);
+    }
+}
+
+/// find_faceted() where there are no rulings: rows of an extruded profile are flat as well.
+std::vector<std::uint8_t> faceted_beside(const Rulings& rulings, const FlowInput& input, std::vector<Surface> surfaces,
+                                         partition::Labels& explained) {
+    const auto ruled = static_cast<std::int32_t>(surfaces.size());
+    Surface freeform;
+    freeform.type = SurfaceType::freeform;
+    surfaces.push_back(freeform);
+    for (std::size_t f = 0; f < explained.size(); ++f) {
+        if (rulings.ruled[f] != 0) explained[f] = ruled;
+    }
+    std::vector<std::uint8_t> faceted = find_faceted(input, rulings.borders, surfaces, explained);
+    for (std::size_t f = 0; f < explained.size(); ++f) {
+        if (rulings.ruled[f] == 0) continue;
+        explained[f] = -1;
+        faceted[f] = 0;
+    }
+    return faceted;
+}
+
 }  // namespace
 
 FlowResult group_freeform(const FlowInput& input, const std::vector<Surface>& surfaces, partition::Labels& explained) {
     const mesh::WorkMesh& mesh = input.mesh;
-    const mesh::FeatureEdges creases =
-        input.features ? *input.features : mesh::find_feature_edges(mesh, crease_degrees, input.control);
-    const std::vector<std::uint8_t> faceted = find_faceted(input, creases, surfaces, explained);
     PatchRules rules;
     rules.jump /= std::sqrt(input.options.detail);
+    const Rulings rulings = find_rulings(
+        mesh, input.features ? *input.features : mesh::find_feature_edges(mesh, crease_degrees, input.control),
+        faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0; }), input.control);
+    const mesh::FeatureEdges& creases = rulings.borders;
     FlowResult result;
+    result.regions = mesh::connected_faces(
+        mesh, [&](std::size_t f) { return rulings.ruled[f] != 0; },
+        [&](std::size_t f, std::size_t k, std::size_t) { return (creases[f] >> k & 1) == 0; },
+        [&] { input.control.check(); }, result.labels);
+    const std::vector<std::uint8_t> faceted = faceted_beside(rulings, input, surfaces, explained);
     {
-        const std::vector<std::uint8_t> free =
-            faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0 && faceted[f] == 0; });
+        const std::vector<std::uint8_t> free = faces_where(explained.size(), [&](std::size_t f) {
+            return explained[f] < 0 && result.labels[f] < 0 && faceted[f] == 0;
+        });
         const CurvatureField field = estimate_curvatures(mesh, free, creases, input.control);
         const std::vector<std::uint8_t> regular = find_regular(mesh, creases, field, rules.jump, input.control);
-        result.labels = curvature_patches(mesh, creases, field, regular, rules, input.control);
-    }
-    for (const std::int32_t label : result.labels) {
-        result.regions = std::max(result.regions, static_cast<std::size_t>(label + 1));
+        add_regions(curvature_patches(mesh, creases, field, regular, rules, input.control), result);
     }
     const std::vector<std::uint8_t> rest =
         faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0 && result.labels[f] < 0; });
@@ -121,13 +155,8 @@ FlowResult group_freeform(const FlowInput& input, const std::vector<Surface>& su
     options.misfit_angle = freeform_misfit_angle;
     options.active = rest;
     FlowResult grouped = run_fast({mesh, &creases, input.options, input.control}, options);
-    for (std::size_t f = 0; f < rest.size(); ++f) {
-        if (rest[f] == 0)
-            grouped.labels[f] =
-                result.labels[f] < 0 ? -1 : result.labels[f] + static_cast<std::int32_t>(grouped.regions);
-    }
     grouped.faceted = mostly_faceted(grouped, faceted);
-    grouped.regions += result.regions;
+    add_regions(result.labels, grouped);
     grouped.faceted.resize(grouped.regions, 0);
     grouped.fits.clear();
     return grouped;

@@ -3,6 +3,7 @@
 #include "datasets/generate.h"
 #include "mesh/work_mesh.h"
 #include "runtime/parallel.h"
+#include "tests/mesh/wall.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,6 +117,19 @@ TEST(ExactSurfaces, StopsWhenCancelled) {
     context.cancel();
     const runtime::RunControl stopped(&context);
     EXPECT_THROW(find_exact_surfaces(mesh, stopped), runtime::Stopped);
+}
+
+/// Two rims lie on a torus wherever four rows do.
+TEST(ExactSurfaces, ExtrudedProfilesAreNoTori) {
+    const runtime::RunControl control(nullptr);
+    const test::Shape wall = test::wall(0, 12, 12);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(wall.view(), control);
+    const ExactSurfaces found = find_exact_surfaces(mesh, control);
+    for (const std::int32_t label : found.labels) {
+        if (label < 0) continue;
+        const SurfaceType type = found.surfaces[static_cast<std::size_t>(label)].type;
+        EXPECT_TRUE(type == SurfaceType::plane || type == SurfaceType::cylinder) << to_string(type);
+    }
 }
 
 }  // namespace

@@ -3,10 +3,14 @@
 #include "datasets/generate.h"
 #include "flow/description_length.h"
 #include "flow/filtered_normals.h"
+#include "flow/standard.h"
 #include "runtime/parallel.h"
 #include "tests/partition/box.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace quadseg {
 namespace {
@@ -68,6 +72,56 @@ TEST(Noise, IsFoundInItsTrueSize) {
         EXPECT_TRUE(noise.noisy());
         EXPECT_NEAR(noise.sigma, share / 40 * mesh.frame.scale, 0.35 * share / 40 * mesh.frame.scale);
     }
+}
+
+/// A unit sphere so coarse that it looks rough, no two of its triangles in a plane, and a small box beside it.
+test::Shape coarse_sphere_and_box() {
+    constexpr std::uint32_t rings = 12, sectors = 20;
+    Gauss gauss;
+    test::Shape s = test::box(2);
+    for (double& x : s.positions) x = 0.2 * x + 2;
+    const std::uint32_t south = s.vertex(0, 0, -1), north = s.vertex(0, 0, 1), first = north + 1;
+    for (std::uint32_t j = 1; j < rings; ++j) {
+        for (std::uint32_t i = 0; i < sectors; ++i) {
+            const double t = 2 * std::numbers::pi * (i + 0.1 * gauss() + 0.5 * j) / sectors;
+            const double a = std::numbers::pi * (j + 0.05 * gauss()) / rings;
+            s.vertex(std::sin(a) * std::cos(t), std::sin(a) * std::sin(t), -std::cos(a));
+        }
+    }
+    const auto at = [&](std::uint32_t j, std::uint32_t i) { return first + (j - 1) * sectors + i % sectors; };
+    for (std::uint32_t i = 0; i < sectors; ++i) {
+        s.face(south, at(1, i + 1), at(1, i));
+        s.face(north, at(rings - 1, i), at(rings - 1, i + 1));
+        for (std::uint32_t j = 1; j + 1 < rings; ++j) s.quad(at(j, i), at(j, i + 1), at(j + 1, i + 1), at(j + 1, i));
+    }
+    return s;
+}
+
+TEST(Noise, CoarseTessellationsAreNone) {
+    const mesh::WorkMesh mesh = test::work_mesh(coarse_sphere_and_box());
+    const NoiseEstimate noise = estimate_noise(mesh, free_run);
+    EXPECT_TRUE(noise.noisy());
+    EXPECT_TRUE(noise.doubtful());
+    const Options options;
+    const FlowResult result = flow::run_standard({mesh, nullptr, options, free_run});
+    EXPECT_EQ(result.regions, 7U);
+    EXPECT_LT(result.noise, 1e-9);
+}
+
+TEST(Noise, AFlatBaseDoesNotHideIt) {
+    test::Shape shape = test::box(20);
+    const std::vector<double> clean = shape.positions;
+    Gauss gauss;
+    for (double& x : shape.positions) x += 0.1 / 20 * gauss();
+    for (std::size_t i = 2; i < clean.size(); i += 3) {
+        if (clean[i] == 0) std::copy_n(&clean[i - 2], 3, &shape.positions[i - 2]);
+    }
+    const mesh::WorkMesh mesh = test::work_mesh(shape);
+    EXPECT_TRUE(estimate_noise(mesh, free_run).doubtful());
+    const Options options;
+    const FlowResult result = flow::run_standard({mesh, nullptr, options, free_run});
+    EXPECT_GT(result.noise, 0.02 / 20 * mesh.frame.scale);
+    EXPECT_LT(result.regions, 12U);
 }
 
 TEST(Noise, PrecisionIsTheRoundingOfTheFile) {
