@@ -18,8 +18,9 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double parallel_tolerance = 1e-6;
 /// A part turns about its direction at least so much (RMS).
 constexpr double least_turn = 1 * degree, least_turn_to_tilt = 4;
-/// Its facets tilt from it where rows differ, and less than they fold: RMS by RMS.
-constexpr double most_tilt_to_fold = 0.4;
+/// Its facets tilt from it where rims are divided differently, and less than they fold: RMS by RMS. If they do not,
+/// every row of edges is a ruling.
+constexpr double most_tilt_to_fold = 0.4, least_tilt_to_fold = 0.1;
 /// Candidates for the direction are sought so near to what the facets tell.
 constexpr double rough_angle = 5 * degree;
 constexpr std::size_t most_directions = 16, fewest_faces = 4;
@@ -52,7 +53,7 @@ class Part {
         find_rungs();
         find_columns();
         std::vector<std::uint8_t> border(rungs_, 1);
-        if (mostly_flat_columns()) {
+        if (mostly_flat_columns() || tilt_ < least_tilt_to_fold * mean_fold()) {
             // Flat columns with vertices inside are facets of a coarser tessellation (flow/faceted.h).
             if (rung_of_.size() > rungs_) return;
             border = kinks();
