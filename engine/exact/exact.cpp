@@ -1,5 +1,6 @@
 #include "exact/exact.h"
 
+#include "exact/bands.h"
 #include "exact/complete.h"
 #include "exact/explained.h"
 #include "exact/face_fit.h"
@@ -94,6 +95,7 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     scene.control.check();
     const double learned = learn_step(candidates);
     const double step = learned > 0 ? std::clamp(learned, least_step, most_step) : unknown_step;
+    split_uneven_bands(scene, candidates);
     ask_again(scene, step, candidates);
     selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);

@@ -53,15 +53,17 @@ class Part {
         find_rungs();
         find_columns();
         std::vector<std::uint8_t> border(rungs_, 1);
+        bool all_known = true;
         if (mostly_flat_columns() || tilt_ < least_tilt_to_fold * mean_fold()) {
             // Flat columns with vertices inside are facets of a coarser tessellation (flow/faceted.h).
             if (rung_of_.size() > rungs_) return;
             border = kinks();
+            all_known = false;
         }
         for (const auto& [edge, rung] : rung_of_) {
             if (border[rung] != 0) set_border(inner_[edge], result.borders);
         }
-        for (const std::uint32_t f : faces_) result.ruled[f] = 1;
+        for (const std::uint32_t f : faces_) result.ruled[f] = all_known ? 1 : 0;
     }
 
   private:

@@ -14,7 +14,7 @@ namespace quadseg::flow {
 
 struct Rulings {
     mesh::FeatureEdges borders;       ///< the creases and the rulings that are borders
-    std::vector<std::uint8_t> ruled;  ///< F flags: of a general cylinder, whose only borders are these
+    std::vector<std::uint8_t> ruled;  ///< F flags: of a general cylinder that has no borders but these
 };
 
 /// Among the faces that are `free`.

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace quadseg::exact {
 namespace {
@@ -130,6 +132,38 @@ TEST(ExactSurfaces, ExtrudedProfilesAreNoTori) {
         const SurfaceType type = found.surfaces[static_cast<std::size_t>(label)].type;
         EXPECT_TRUE(type == SurfaceType::plane || type == SurfaceType::cylinder) << to_string(type);
     }
+}
+
+/// A disc with a cylindrical rim between two chamfers: its four circles lie on a torus.
+TEST(ExactSurfaces, UnevenBandsAreNoTorus) {
+    constexpr std::uint32_t sectors = 48;
+    test::Shape s;
+    for (const auto& [r, z] : {std::pair{0.9, -0.5}, {1.0, -0.35}, {1.0, 0.35}, {0.9, 0.5}}) {
+        for (std::uint32_t i = 0; i < sectors; ++i) {
+            const double t = 2 * std::numbers::pi * i / sectors;
+            s.vertex(r * std::cos(t), r * std::sin(t), z);
+        }
+    }
+    const std::uint32_t below = s.vertex(0, 0, -0.5), above = s.vertex(0, 0, 0.5);
+    for (std::uint32_t i = 0; i < sectors; ++i) {
+        const std::uint32_t k = (i + 1) % sectors;
+        s.face(below, k, i);
+        s.face(above, 3 * sectors + i, 3 * sectors + k);
+        for (std::uint32_t j = 0; j < 3; ++j) {
+            s.quad(j * sectors + i, j * sectors + k, (j + 1) * sectors + k, (j + 1) * sectors + i);
+        }
+    }
+    const runtime::RunControl control(nullptr);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(s.view(), control);
+    const ExactSurfaces found = find_exact_surfaces(mesh, control);
+    std::map<SurfaceType, std::set<std::int32_t>> regions;
+    for (const std::int32_t label : found.labels) {
+        ASSERT_GE(label, 0);
+        regions[found.surfaces[static_cast<std::size_t>(label)].type].insert(label);
+    }
+    EXPECT_EQ(regions[SurfaceType::plane].size(), 2U);
+    EXPECT_EQ(regions[SurfaceType::cylinder].size(), 1U);
+    EXPECT_EQ(regions[SurfaceType::cone].size(), 2U);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST(Rulings, RowsThatAgreeOnlyAtABorderShowIt) {
 TEST(Rulings, EvenRowsAreCutAtKinks) {
     EXPECT_EQ(cut_at_rulings(wall(0.2, 12, 12)).parts, 2U);
     EXPECT_EQ(cut_at_rulings(wall(0, 12, 12)).parts, 1U);
-    EXPECT_EQ(cut_at_rulings(wall(0, 12, 12)).ruled, 48U);
+    EXPECT_EQ(cut_at_rulings(wall(0, 12, 12)).ruled, 0U);  // it may have borders without a kink
 }
 
 TEST(Rulings, OtherSurfacesHaveNone) {
