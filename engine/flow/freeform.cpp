@@ -17,6 +17,8 @@ namespace {
 constexpr double crease_degrees = 30;
 /// By energy, patches are grouped with a wide misfit: few and stable ones (PROTOTYPE_TRUTH.md 1.14: τ = .03).
 constexpr double freeform_misfit_angle = 14;
+/// Facets hide a simple surface: theirs is the narrower one of subdivided CAD tessellations (mean IoU .920 → .939).
+constexpr double facets_misfit_angle = 8;
 /// Curvature counts as known where at most this share of the edges shows a jump that could be a border: on CAD meshes
 /// 1 to 19 %, on organic and simplified ones 21 to 40 %.
 constexpr double most_jumps = 0.2;
@@ -81,19 +83,6 @@ std::vector<std::uint8_t> faces_where(std::size_t count, const auto& wanted) {
     return faces;
 }
 
-/// A flag a region: most of its faces are faceted.
-std::vector<std::uint8_t> mostly_faceted(const FlowResult& grouped, const std::vector<std::uint8_t>& faceted) {
-    std::vector<std::int64_t> balance(grouped.regions, 0);
-    for (std::size_t f = 0; f < faceted.size(); ++f) {
-        const std::int32_t label = grouped.labels[f];
-        if (label >= 0 && label < static_cast<std::int32_t>(balance.size()))
-            balance[static_cast<std::size_t>(label)] += faceted[f] != 0 ? 1 : -1;
-    }
-    std::vector<std::uint8_t> flags(balance.size());
-    for (std::size_t r = 0; r < flags.size(); ++r) flags[r] = balance[r] > 0 ? 1 : 0;
-    return flags;
-}
-
 /// Labels that are −1 so far.
 void add_regions(const partition::Labels& more, FlowResult& result) {
     const auto first = static_cast<std::int32_t>(result.regions);
@@ -102,6 +91,33 @@ void add_regions(const partition::Labels& more, FlowResult& result) {
         result.labels[f] = first + more[f];
         result.regions = std::max(result.regions, static_cast<std::size_t>(result.labels[f]) + 1);
     }
+}
+
+void group_by_energy(const FlowInput& input, const mesh::FeatureEdges& creases, const std::vector<std::uint8_t>& wanted,
+                     double misfit_angle, FlowResult& result) {
+    if (std::find(wanted.begin(), wanted.end(), 1) == wanted.end()) return;
+    FastOptions options = fast_options(input.options);
+    options.misfit_angle = misfit_angle;
+    options.active = wanted;
+    FlowResult grouped = run_fast({input.mesh, &creases, input.options, input.control}, options);
+    add_regions(grouped.labels, result);
+    result.stop = grouped.stop;
+    result.partial = grouped.partial;
+    if (result.history.empty()) result.history = std::move(grouped.history);
+}
+
+/// What a stop left without a group: connected parts.
+void label_ungrouped(const mesh::WorkMesh& mesh, const mesh::FeatureEdges& creases, const partition::Labels& explained,
+                     FlowResult& result) {
+    if (!result.partial) return;
+    const std::vector<std::uint8_t> left =
+        faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0 && result.labels[f] < 0; });
+    partition::Labels parts;
+    mesh::connected_faces(
+        mesh, [&](std::size_t f) { return left[f] != 0; },
+        [&](std::size_t f, std::size_t k, std::size_t) { return (creases[f] >> k & 1) == 0; }, [] {}, parts);
+    add_regions(parts, result);
+    result.faceted.resize(result.regions, 0);
 }
 
 /// find_faceted() where there are no rulings: rows of an extruded profile are flat as well.
@@ -147,19 +163,17 @@ FlowResult group_freeform(const FlowInput& input, const std::vector<Surface>& su
         const std::vector<std::uint8_t> regular = find_regular(mesh, creases, field, rules.jump, input.control);
         add_regions(curvature_patches(mesh, creases, field, regular, rules, input.control), result);
     }
-    const std::vector<std::uint8_t> rest =
-        faces_where(explained.size(), [&](std::size_t f) { return explained[f] < 0 && result.labels[f] < 0; });
-    if (std::find(rest.begin(), rest.end(), 1) == rest.end()) return result;
-
-    FastOptions options = fast_options(input.options);
-    options.misfit_angle = freeform_misfit_angle;
-    options.active = rest;
-    FlowResult grouped = run_fast({mesh, &creases, input.options, input.control}, options);
-    grouped.faceted = mostly_faceted(grouped, faceted);
-    add_regions(result.labels, grouped);
-    grouped.faceted.resize(grouped.regions, 0);
-    grouped.fits.clear();
-    return grouped;
+    result.faceted.assign(result.regions, 0);
+    for (const bool in_facets : {true, false}) {
+        const std::vector<std::uint8_t> wanted = faces_where(explained.size(), [&](std::size_t f) {
+            return explained[f] < 0 && result.labels[f] < 0 && (faceted[f] != 0) == in_facets;
+        });
+        group_by_energy(input, creases, wanted, in_facets ? facets_misfit_angle : freeform_misfit_angle, result);
+        result.faceted.resize(result.regions, in_facets ? 1 : 0);
+        if (result.partial) break;
+    }
+    label_ungrouped(mesh, creases, explained, result);
+    return result;
 }
 
 }  // namespace quadseg::flow
