@@ -42,6 +42,8 @@ constexpr double exact_tolerance = 2e-7;
 constexpr double trim_error = 2e-5;
 /// Degrees by which the normals of a surface that explains a free-form patch may differ from the mesh's (RMS).
 constexpr double free_form_angle = 12;
+/// And the RMS distance from it, in RMS radii of the patch, where none is exact.
+constexpr double free_form_distance = 0.02;
 /// A refined quadric stands for the moments' one where it is so many times nearer to the vertices: then they lie on it,
 /// and the moments suffer from the facets' chords (MATH.md §3).
 constexpr double exact_quadric_gain = 5;
@@ -236,10 +238,8 @@ class Finisher {
 
   private:
     /// Neither verified on its vertices nor to be judged by a known noise.
-    bool by_energy(std::size_t r) const {
-        return (r < flow_.faceted.size() && flow_.faceted[r] != 0) ||
-               (!(flow_.noise > 0) && r >= flow_.surfaces.size());
-    }
+    bool by_energy(std::size_t r) const { return is_faceted(r) || (!(flow_.noise > 0) && r >= flow_.surfaces.size()); }
+    bool is_faceted(std::size_t r) const { return r < flow_.faceted.size() && flow_.faceted[r] != 0; }
 
     const std::uint32_t* faces(std::size_t r) const { return regions_.face.data() + regions_.begin[r]; }
 
@@ -374,7 +374,16 @@ class Finisher {
         } else if (fit.ok) {
             refine_choice(fit.surface, sample, own, options, result);
         }
+        if (is_faceted(r) && !explains(result.surface, few, result.extent)) {
+            describe_free_form(sample, result);
+            return;
+        }
         (void)quadric_of(result.surface, result.centroid, result.quadric);
+    }
+
+    /// Near enough to be named where no vertex lies on a surface exactly.
+    static bool explains(const Surface& s, const RegionSample& sample, double extent) {
+        return surface::measure(s, sample.all()).rms <= free_form_distance * extent && !wrong_normals(s, sample);
     }
 
     /// A typed surface on which half of the vertices lie exactly and the others nearly: trim curves of CAD files are
