@@ -7,6 +7,8 @@
 #include "runtime/run_control.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace quadseg::exact {
 
@@ -69,6 +71,7 @@ class ChartSearch {
             }
             at_once_ = any ? std::max<std::size_t>(1, at_once_ / 2) : std::min(most_seeds_at_once, at_once_ * 2);
         }
+        if (!options_.quadrics) retry_regular_rows();
         for (const std::uint32_t f : faces_) {
             if (covered_[f] == no_seed) covered_[f] = 0;
         }
@@ -83,6 +86,50 @@ class ChartSearch {
             if (covered_[faces_[next]] == 0) seeds.push_back(faces_[next]);
         }
         return seeds;
+    }
+
+    /// Between two neighbours of its own size the facet folds by the same angle: so do those of cylinders, and hardly
+    /// ever those of free-form faces.
+    bool is_in_regular_row(std::uint32_t face) const {
+        constexpr double equal = 0.01, least_fold = 1e-3;
+        const Facets& facets = scene_.facets;
+        const auto own = static_cast<std::size_t>(facets.of_face[face]);
+        const double area = facets.facet[own].area;
+        std::array<std::int32_t, 2> beside{-1, -1};
+        std::array<double, 2> folds{};
+        std::size_t count = 0;
+        for (std::size_t j = facets.begin[own]; j < facets.begin[own + 1]; ++j) {
+            const std::uint32_t f = facets.face[j];
+            for (int k = 0; k < 3; ++k) {
+                const std::int32_t g = scene_.mesh.neighbors[f][static_cast<std::size_t>(k)];
+                if (scene_.is_crease(f, k) || scene_.in_sure_plane(static_cast<std::size_t>(g))) continue;
+                const std::int32_t other = facets.of_face[static_cast<std::size_t>(g)];
+                if (other == facets.of_face[face] || other == beside[0] || other == beside[1]) continue;
+                const Facet& facet = facets.facet[static_cast<std::size_t>(other)];
+                if (count == 2 || std::abs(facet.area - area) > equal * area) return false;
+                beside[count] = other;
+                folds[count++] = angle_between(facet.normal, facets.facet[own].normal);
+            }
+        }
+        return count == 2 && folds[0] > least_fold && std::abs(folds[0] - folds[1]) <= equal * folds[0];
+    }
+
+    /// Quiet zones of free-form faces reach into narrow faces beside them.
+    void retry_regular_rows() {
+        constexpr std::size_t most_failures = 24;
+        std::size_t failures = 0;
+        for (const std::uint32_t seed : faces_) {
+            if (covered_[seed] != no_seed || !is_in_regular_row(seed)) continue;
+            scene_.control.check();
+            const auto usable = [&](std::uint32_t f) { return scene_.chart[f] != chart_ || covered_[f] != explained; };
+            Finding found = find_surface(scene_, seed, options_, usable, marks_.local());
+            const bool curved = found.candidate && found.candidate->surface.type != SurfaceType::plane;
+            if (curved && commit(std::move(*found.candidate))) {
+                failures = 0;
+            } else if (++failures > most_failures) {
+                return;
+            }
+        }
     }
 
     bool commit(Candidate candidate) {

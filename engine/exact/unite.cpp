@@ -179,6 +179,17 @@ bool explains(const Scene& scene, const Explained& state, std::int32_t region,
                        [&](std::uint32_t f) { return fitter.distance(f) <= scene.tolerances.border; });
 }
 
+/// One facet of several faces, whose area is many times that of a face beside it.
+bool is_large_flat(const Scene& scene, const std::vector<std::uint32_t>& piece, double face_area) {
+    constexpr double large = 16;
+    double area = 0;
+    for (const std::uint32_t f : piece) {
+        if (scene.facets.of_face[f] != scene.facets.of_face[piece.front()]) return false;
+        area += scene.mesh.areas[f];
+    }
+    return piece.size() > 1 && area > large * face_area;
+}
+
 /// All vertices of a piece lie on a surface to the last digit, and its faces along it as far as slivers can.
 bool lies_exactly_on(const Scene& scene, const Surface& surface, const std::vector<std::uint32_t>& piece) {
     constexpr double largest_tilt = 45 * std::numbers::pi / 180;
@@ -228,7 +239,11 @@ void unite_equal(const Scene& scene, double largest_step, Explained& state) {
 void absorb_scraps(const Scene& scene, Explained& state) {
     std::vector<std::vector<std::uint32_t>> pieces = free_components(scene, state, false);
     const std::size_t free_pieces = pieces.size();
+    std::vector<double> mean_area;
     for (auto& faces : faces_of_regions(state)) {
+        double area = 0;
+        for (const std::uint32_t f : faces) area += scene.mesh.areas[f];
+        mean_area.push_back(area / static_cast<double>(std::max<std::size_t>(1, faces.size())));
         const bool tiny = faces.size() <= 2 && !faces.empty();
         if (tiny) pieces.push_back(std::move(faces));
     }
@@ -248,6 +263,16 @@ void absorb_scraps(const Scene& scene, Explained& state) {
                      })->region;
         }
         if (target < 0) continue;
+        // A large flat beside small facets is a face of its own, however smoothly it goes on.
+        if (host == hosts.end() && is_large_flat(scene, piece, mean_area[static_cast<std::size_t>(target)])) {
+            const Facet& facet = scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[piece.front()])];
+            Surface plane;
+            plane.type = SurfaceType::plane;
+            plane.axis = to_array(facet.normal);
+            plane.point = to_array(facet.normal * facet.offset);
+            target = state.add(plane);
+            mean_area.push_back(0);
+        }
         for (const std::uint32_t f : piece) state.region[f] = target;
     }
     separate_parts(scene, state);

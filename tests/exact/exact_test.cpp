@@ -166,5 +166,31 @@ TEST(ExactSurfaces, UnevenBandsAreNoTorus) {
     EXPECT_EQ(regions[SurfaceType::cone].size(), 2U);
 }
 
+/// A twisted strip on which every search fails goes on smoothly as a cylinder of one row.
+TEST(ExactSurfaces, NarrowCylinderBesideFreeFormIsFound) {
+    constexpr std::uint32_t twisted = 40, round = 10;
+    constexpr double height = 0.12, radius = 1 / 0.6;
+    test::Shape s;
+    for (std::uint32_t i = 0; i < twisted; ++i) {
+        const double x = std::pow(double(i) / twisted, 1.3) - 1, y = 0.3 * x * x - 0.25 * x * x * x;
+        s.vertex(x, y, 0);
+        s.vertex(x - 0.03 * std::sin(9 * x) * x, y + 0.05 * x * x * std::sin(11 * x), height);
+    }
+    for (std::uint32_t i = 0; i <= round; ++i) {
+        const double a = 50 * std::numbers::pi / 180 * i / round;
+        for (const double z : {0.0, height}) s.vertex(radius * std::sin(a), radius - radius * std::cos(a), z);
+    }
+    for (std::uint32_t i = 0; i < twisted + round; ++i) s.quad(2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
+    const runtime::RunControl control(nullptr);
+    const mesh::WorkMesh mesh = mesh::build_work_mesh(s.view(), control);
+    const ExactSurfaces found = find_exact_surfaces(mesh, control);
+    const std::vector<std::int32_t> labels = mesh::labels_to_input(mesh, found.labels);
+    for (std::size_t f = std::size_t{2} * twisted; f < labels.size(); ++f) {
+        ASSERT_GE(labels[f], 0) << f;
+        EXPECT_EQ(labels[f], labels.back());
+    }
+    EXPECT_EQ(found.surfaces[static_cast<std::size_t>(labels.back())].type, SurfaceType::cylinder);
+}
+
 }  // namespace
 }  // namespace quadseg::exact
