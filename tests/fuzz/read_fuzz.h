@@ -3,6 +3,7 @@
 
 #include <quadseg/error.h>
 
+#include "cpu_limit.h"
 #include "io/file_contents.h"
 #include "io/formats.h"
 #include "runtime/run_control.h"
@@ -26,9 +27,10 @@ inline void require_sound(const Mesh& mesh) {
     for (const double x : mesh.positions) require(std::isfinite(x));
 }
 
-/// read(file, control) may throw Error and nothing else.
+/// read(file, control) may throw Error and nothing else, and a few kilobytes take no second.
 template <class Read>
 int run(const std::uint8_t* data, std::size_t size, const char* name, const Read& read) {
+    const CpuLimit limit(2);
     const runtime::RunControl control(nullptr);
     try {
         io::FileContents file(std::string_view(reinterpret_cast<const char*>(data), size), name);
