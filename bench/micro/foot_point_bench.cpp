@@ -23,7 +23,8 @@ void foot_point(benchmark::State& state) {
     samples::Random random(1);
     std::vector<Vec3> points;
     for (int i = 0; i < 1000; ++i) {
-        const Vec3 p = 2 * random.uniform(0, 1) * random.direction();
+        const Vec3 direction = random.direction();
+        const Vec3 p = 2 * random.uniform(0, 1) * direction;
         points.push_back(share * p + (1 - share) * projector.foot_point(p));
     }
     for (auto _ : state)

@@ -84,9 +84,14 @@ TEST(Ladder, EnergyOfAUnionIsNotBelowThatOfItsParts) {
     Random random(3);
     for (int round = 0; round < 50; ++round) {
         Soup a, b;
+        const auto add_triangle = [&](Soup& soup) {
+            // One after the other: of arguments no order is laid down.
+            const Vec3 third = random.vector(1), second = random.vector(1), first = random.vector(1);
+            soup.add(first, second, third);
+        };
         for (int k = 0; k < 6; ++k) {
-            a.add(random.vector(1), random.vector(1), random.vector(1));
-            b.add(random.vector(1), random.vector(1), random.vector(1));
+            add_triangle(a);
+            add_triangle(b);
         }
         const Vec3 oa = random.vector(1), ob = random.vector(1), o = random.vector(1);
         const Moments both = joined(a.moments(oa), oa, b.moments(ob), ob, o);

@@ -80,7 +80,8 @@ Patch patch_of(const quadric::Coefficients& c, const Vec3& middle, double size, 
     const QuadricProjector projector(c);
     Patch patch;
     for (int i = 0; i < 50 * count && int(patch.points.size()) < count; ++i) {
-        const Vec3 p = projector.foot_point(middle + size * random.uniform(0, 1) * random.direction());
+        const Vec3 direction = random.direction();
+        const Vec3 p = projector.foot_point(middle + size * random.uniform(0, 1) * direction);
         const Vec3 n = normalized(quadric::gradient(c, p));
         if (norm(p - middle) > 1.5 * size || dot(n, normalized(quadric::gradient(c, middle))) < 0) continue;
         patch.points.push_back(p);

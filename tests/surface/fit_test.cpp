@@ -197,7 +197,8 @@ TEST(Fit, RandomPointsNeverCrash) {
         Patch patch;
         const int n = 1 + int(random.next() % 40);
         for (int i = 0; i < n; ++i) {
-            patch.points.push_back(random.direction() * random.uniform(0, 1));
+            const double length = random.uniform(0, 1);
+            patch.points.push_back(random.direction() * length);
             patch.normals.push_back(random.direction());
             if (random.next() % 5 == 0) patch.points.back() = patch.points[0];
         }

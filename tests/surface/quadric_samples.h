@@ -68,7 +68,7 @@ inline PrincipalQuadric random_quadric(Kind kind, Random& random) {
         q.axes[1] = {0, 1, 0};
         q.axes[2] = {0, 0, 1};
     }
-    if (random.next() % 3 != 0) q.centre = random.uniform(0, 3) * random.direction();
+    if (random.next() % 3 != 0) q.centre = random.vector(0, 3);
     double k[3];
     for (double& v : k) v = std::exp(random.uniform(-2, 2));
     if (random.next() % 4 == 0) k[1] = k[0];  // of revolution

@@ -27,6 +27,12 @@ class Random {
         const double r = std::sqrt(-2 * std::log(1 - uniform(0, 1)));
         return r * std::cos(uniform(0, 2 * std::numbers::pi));
     }
+    /// Of arguments and factors no order is laid down, and gcc and clang draw them in different ones: here a length
+    /// comes after its direction.
+    Vec3 vector(double low, double high) {
+        const Vec3 d = direction();
+        return uniform(low, high) * d;
+    }
     Vec3 direction() {
         Vec3 v{gauss(), gauss(), gauss()};
         return normalized(v);
@@ -87,21 +93,26 @@ inline Vec3 point_on(const Surface& s, double u, double v) {
     }
 }
 
+/// The second parameter is drawn first.
 inline Vec3 random_point_on(const Surface& s, Random& random) {
     const double pi = std::numbers::pi;
     double limit = pi;
     if (s.type == SurfaceType::torus && s.minor_radius > s.radius) limit = std::acos(-s.radius / s.minor_radius);
+    const auto point = [&](double u, double low, double high) {
+        const double v = random.uniform(low, high);
+        return point_on(s, random.uniform(-u, u), v);
+    };
     switch (s.type) {
         case SurfaceType::plane:
-            return point_on(s, random.uniform(-2, 2), random.uniform(-2, 2));
+            return point(2, -2, 2);
         case SurfaceType::sphere:
             return s.radius * random.direction() + to_vec3(s.point);
         case SurfaceType::cylinder:
-            return point_on(s, random.uniform(-pi, pi), random.uniform(-2, 2));
+            return point(pi, -2, 2);
         case SurfaceType::cone:
-            return point_on(s, random.uniform(-pi, pi), random.uniform(.01, 3));
+            return point(pi, .01, 3);
         default:
-            return point_on(s, random.uniform(-pi, pi), random.uniform(-.999 * limit, .999 * limit));
+            return point(pi, -.999 * limit, .999 * limit);
     }
 }
 
@@ -142,7 +153,7 @@ inline Patch grid(const Surface& s, Range u, Range v, double bend = 0, std::uint
         for (int j = 0; j < v.count; ++j) {
             const Vec3 p = point_on(s, u.at(i), v.at(j));
             patch.points.push_back(p);
-            patch.normals.push_back(normalized(true_normal(s, p) + random.uniform(0, bend) * random.direction()));
+            patch.normals.push_back(normalized(true_normal(s, p) + random.vector(0, bend)));
         }
     }
     return patch;
