@@ -1,8 +1,11 @@
 """The decisions of bench/compare_revisions and bench/instruction_gate."""
+import contextlib
 import importlib.machinery
 import importlib.util
+import io
 import json
 import pathlib
+import tempfile
 import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
@@ -43,6 +46,57 @@ class CompareRevisions(unittest.TestCase):
     def test_scatter_within_the_series_counts_as_noise(self):
         scattered = [0.8, 1.0, 1.2, 0.8, 1.2]
         self.assertFalse(self.flagged(scattered, [1.1] * 5, scattered))
+
+
+# Stands for quadseg: generates an empty mesh, and takes so long to segment it.
+STAND_IN = """#!/usr/bin/env python3
+import pathlib, sys, time
+out = pathlib.Path(sys.argv[sys.argv.index("-o") + 1])
+out.mkdir(parents=True, exist_ok=True)
+if sys.argv[1] == "segment":
+    end = time.process_time() + SECONDS
+    while time.process_time() < end:
+        pass
+    (out / "result.json").write_text('{"energy": {"total": 1}}')
+"""
+
+
+class CompareBuilds(unittest.TestCase):
+    """The whole script, over two build folders."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for name, seconds in (("fast", 0.02), ("slow", 0.2), ("same", 0.02)):
+            program = self.folder / name / "bin" / "quadseg"
+            program.parent.mkdir(parents=True)
+            program.write_text(STAND_IN.replace("SECONDS", str(seconds)))
+            program.chmod(0o755)
+
+    def compare(self, base, head):
+        script = load("compare_revisions")
+        script.GENERATED = [("job", "plate", 1000, [])]
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output):
+            code = script.main([str(base), str(head), "--rounds", "2"])
+        return code, output.getvalue()
+
+    def test_the_slower_build_is_flagged(self):
+        code, output = self.compare(self.folder / "fast", self.folder / "slow" / "bin" / "quadseg")
+        self.assertEqual(code, 1)
+        self.assertIn("**slower**", output)
+
+    def test_the_faster_build_is_not(self):
+        code, output = self.compare(self.folder / "slow", self.folder / "same")
+        self.assertEqual(code, 0, output)
+        self.assertNotIn("**slower**", output)
+
+    def test_a_folder_without_the_program_says_how_to_make_it(self):
+        (self.folder / "empty").mkdir()
+        (self.folder / "empty" / "CMakeCache.txt").write_text("")
+        with self.assertRaisesRegex(SystemExit, "quadseg_program"):
+            self.compare(self.folder / "empty", self.folder / "fast")
 
 
 class InstructionGate(unittest.TestCase):
