@@ -78,8 +78,12 @@ void add_planes(const Scene& scene, double largest_step, Explained& state) {
         if (!(scene.facets.facet[facet].area > 0) || !is_free(scene, state, facet)) continue;
         if (bounded_share(scene, state, facet, angle) >= crease_share) planes.push_back(facet);
     }
-    for (const std::size_t facet : planes) claim_facet(scene, state, facet);
+    for (const std::size_t facet : planes) {
+        scene.control.check();
+        claim_facet(scene, state, facet);
+    }
     for (const auto& component : free_components(scene, state, false)) {
+        scene.control.check();
         std::vector<std::int32_t> facets;
         facets.reserve(component.size());
         for (const std::uint32_t f : component) facets.push_back(scene.facets.of_face[f]);
@@ -118,10 +122,11 @@ void extend_to_borders(const Scene& scene, double largest_step, Explained& state
             offers.push({fit.distance, static_cast<std::uint32_t>(g), region});
         }
     };
+    std::size_t polls = 0;
     for (std::size_t f = 0; f < state.region.size(); ++f) {
+        scene.control.check_often(polls);
         if (state.region[f] >= 0) offer_neighbours(static_cast<std::uint32_t>(f));
     }
-    std::size_t polls = 0;
     while (!offers.empty()) {
         scene.control.check_often(polls);
         const Offer offer = offers.top();

@@ -158,16 +158,20 @@ class FacetFinder {
     }
 
     Facets find() {
-        for (const std::uint32_t seed : order_by_height(heights_)) {
+        const std::vector<std::uint32_t> order = order_by_height(heights_);
+        control_.check();
+        for (const std::uint32_t seed : order) {
             control_.check_often(polls_);
             if (result_.of_face[seed] < 0) grow(seed);
         }
         begin_.push_back(static_cast<std::uint32_t>(members_.size()));
+        control_.check();
         interior_ = interior_vertices(mesh_, result_.of_face);
         runtime::parallel_blocks(result_.facet.size(), facet_grain, [&](std::size_t begin, std::size_t end) {
             control_.check();
             for (std::size_t id = begin; id < end; ++id) judge(id);
         });
+        control_.check();
         index_faces();
         return std::move(result_);
     }

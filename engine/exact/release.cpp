@@ -48,7 +48,9 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
     for (std::size_t f = 0; f < state.region.size(); ++f) {
         if (state.region[f] >= 0) borders[static_cast<std::size_t>(state.region[f])].area += scene.mesh.areas[f];
     }
+    std::size_t polls = 0;
     for (std::size_t f = 0; f < state.region.size(); ++f) {
+        scene.control.check_often(polls);
         if (state.region[f] < 0) continue;
         RegionBorder& border = borders[static_cast<std::size_t>(state.region[f])];
         for (int k = 0; k < 3; ++k) {
@@ -80,7 +82,9 @@ std::vector<std::size_t> row_sizes(const Scene& scene, const Explained& state, c
         while (parent[r] != r) r = parent[r] = parent[parent[r]];
         return r;
     };
+    std::size_t polls = 0;
     for (std::size_t f = 0; f < state.region.size(); ++f) {
+        scene.control.check_often(polls);
         const std::int32_t a = state.region[f];
         if (a < 0 || strip[static_cast<std::size_t>(a)] == 0) continue;
         for (const std::int32_t g : scene.mesh.neighbors[f]) {

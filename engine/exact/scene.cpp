@@ -62,7 +62,9 @@ void find_depths(Scene& scene) {
     constexpr std::uint16_t unknown = 0xffff;
     scene.depth.assign(mesh.face_count(), unknown);
     std::vector<std::uint32_t> ring, next;
+    std::size_t polls = 0;
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+        scene.control.check_often(polls);
         bool edge = scene.in_sure_plane(f) || scene.creases[f] != 0;
         for (std::size_t k = 0; !edge && k < 3; ++k) {
             edge = scene.in_sure_plane(static_cast<std::size_t>(mesh.neighbors[f][k]));
@@ -95,18 +97,26 @@ double dihedral(const mesh::WorkMesh& mesh, std::size_t f, std::size_t g) {
 
 Scene with_creases(const Scene& scene, double degrees) {
     Scene other = scene;
+    scene.control.check();
     other.creases = find_creases(scene.mesh, degrees);
+    scene.control.check();
     find_charts(other);
+    scene.control.check();
     find_depths(other);
     return other;
 }
 
 Scene build_scene(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
     Scene scene{mesh, control, choose_tolerances(mesh), {}, {}, {}, {}, 0, {}};
+    control.check();
     scene.heights = face_heights(mesh);
+    control.check();
     scene.facets = find_facets(mesh, scene.tolerances, scene.heights, control);
+    control.check();
     scene.creases = find_creases(mesh, crease_degrees);
+    control.check();
     find_charts(scene);
+    control.check();
     find_depths(scene);
     return scene;
 }

@@ -99,7 +99,9 @@ class Selector {
             const FaceFitter fitter(scene_, candidate.surface);
             const double allowed_step = 1.7 * std::max(largest_step_, candidate.step);
             claims_[c].reserve(candidate.faces.size());
+            std::size_t polls = 0;
             for (const std::uint32_t f : candidate.faces) {
+                scene_.control.check_often(polls);
                 const FaceFit fit = fitter(f);
                 const bool flat_cut = candidate.surface.type != SurfaceType::plane && fit.step > allowed_step;
                 // Logarithmic: errors of trim curves must not outvote the normal.

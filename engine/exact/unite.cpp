@@ -33,7 +33,9 @@ struct Border {
 
 std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
     std::map<std::pair<std::int32_t, std::int32_t>, Border> borders;
+    std::size_t polls = 0;
     for (std::size_t f = 0; f < state.region.size(); ++f) {
+        scene.control.check_often(polls);
         for (int k = 0; k < 3; ++k) {
             const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
             if (g < 0) continue;
@@ -61,6 +63,7 @@ class Uniter {
     void run() {
         for (bool any = true; any;) {
             any = false;
+            scene_.control.check();
             for (const Border& border : borders_of(scene_, state_)) {
                 scene_.control.check();
                 const std::int32_t a = find(border.a), b = find(border.b);

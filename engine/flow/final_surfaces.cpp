@@ -189,7 +189,7 @@ class TypeChoice {
 };
 
 /// Faces that the surfaces of a stopped call are made of, all regions together; below so many a region, planes.
-constexpr std::size_t rough_faces = 16384, least_rough_fit = 64;
+constexpr std::size_t rough_faces = 4096, least_rough_fit = 64;
 
 class Finisher {
   public:

@@ -160,7 +160,7 @@ Latency cpu_after_cancelling(const MeshView& mesh, const Options& options, doubl
     clockid_t own{};
     pthread_getcpuclockid(pthread_self(), &own);
     const double start = seconds_of(own);
-    std::atomic<double> stopped{0};
+    double before = 0, stopped = 0;
     std::atomic<bool> finished{false};
     Latency latency;
     std::thread killer([&] {
@@ -169,19 +169,20 @@ Latency cpu_after_cancelling(const MeshView& mesh, const Options& options, doubl
         }
         latency.phase = std::string(to_string(static_cast<Phase>(phase.load()))) + " " +
                         std::to_string(static_cast<int>(100 * fraction.load())) + " %";
-        stopped = seconds_of(own);
+        before = seconds_of(own);
         context.cancel();
+        stopped = seconds_of(own);
     });
-    {
-        const Segmentation result = segment(mesh, options, &context);
-        const double end = seconds_of(own);
-        finished = true;
-        killer.join();
-        latency.seconds = std::max(0.0, end - stopped);
-        latency.after = end - start;
-        latency.partial = result.partial;
-        if (result.partial) latency.phase += ", " + std::to_string(result.regions.size()) + " regions";
-    }
+    const Segmentation result = segment(mesh, options, &context);
+    const double end = seconds_of(own);
+    finished = true;
+    killer.join();
+    // On a busy machine this thread may have gone on for a while before the other one's next instruction.
+    if (stopped - before > 5e-4 && stopped < end) return cpu_after_cancelling(mesh, options, moment);
+    latency.seconds = std::max(0.0, end - before);
+    latency.after = end - start;
+    latency.partial = result.partial;
+    if (result.partial) latency.phase += ", " + std::to_string(result.regions.size()) + " regions";
     return latency;
 }
 
@@ -204,7 +205,10 @@ TEST_P(Stops, OneThreadWithin50MillisecondsOfItsCpuTime) {
         const Latency l = cpu_after_cancelling(part.mesh.view(), options, moment);
         std::printf("%-14s %7.3f s of %6.2f  %5.1f CPU ms  %s%s\n", GetParam().name, l.after, whole, 1e3 * l.seconds,
                     l.phase.c_str(), l.partial ? "" : "  (was done)");
-        if (l.partial) EXPECT_LE(l.seconds, 0.05) << l.phase;
+        std::fflush(stdout);
+        if (l.partial) {
+            EXPECT_LE(l.seconds, 0.05) << l.phase;
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 #include "runtime/run_control.h"
 #include "tests/mesh/shapes.h"
 
+#include <atomic>
 #include <gtest/gtest.h>
 
 namespace quadseg {
@@ -76,6 +77,21 @@ TEST(ConnectedFaces, TheResultMayReplaceTheLabelsThatAreAsked) {
                   mesh, wanted, together, [] {}, labels),
               count);
     EXPECT_EQ(labels, expected);
+}
+
+/// It may look up what only wanted faces have, at either side of the edge.
+TEST(ConnectedFaces, AsksAboutWantedNeighboursOnly) {
+    const mesh::WorkMesh mesh = test::build(test::grid(120, 120));
+    const auto wanted = [](std::size_t f) { return f % 5 != 0; };
+    std::atomic<int> wrong{0};
+    const auto together = [&](std::size_t f, std::size_t k, std::size_t g) {
+        if (!wanted(f) || !wanted(g) || mesh.neighbors[f][k] != static_cast<std::int32_t>(g)) ++wrong;
+        return true;
+    };
+    std::vector<std::int32_t> part;
+    mesh::connected_faces(
+        mesh, wanted, together, [] {}, part);
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(ConnectedFaces, NothingWanted) {
