@@ -1,5 +1,6 @@
 #include "flow/filtered_normals.h"
 
+#include "mesh/vertex_faces.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -33,7 +34,8 @@ double range_width(const mesh::WorkMesh& mesh, const std::vector<Vec3>& normals)
 
 std::vector<Vec3> filtered_normals(const mesh::WorkMesh& mesh, int averages, int passes,
                                    const runtime::RunControl& control) {
-    const mesh::VertexFaces incident = mesh::vertex_faces(mesh);
+    const mesh::VertexFaces incident = mesh::vertex_faces(mesh, control);
+    control.check();
     std::vector<Vec3> normals = mesh.normals, next(normals.size());
     for (int pass = 0; pass < averages + passes; ++pass) {
         const bool bilateral = pass >= averages;

@@ -1,5 +1,6 @@
 #include "flow/noise.h"
 
+#include "mesh/vertex_faces.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -52,7 +53,8 @@ EdgeStatistics sample_edges(const mesh::WorkMesh& mesh) {
 /// Robust standard deviation of n·(I − S)²x, S the mean over the ring: low frequencies are gone, of white noise of
 /// standard deviation 1 remains 1.36.
 double bilaplacian_deviation(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
-    const mesh::VertexFaces incident = mesh::vertex_faces(mesh);
+    const mesh::VertexFaces incident = mesh::vertex_faces(mesh, control);
+    control.check();
     const std::size_t vertices = mesh.vertex_count();
     const auto minus_ring_mean = [&](const std::vector<Vec3>& x, std::size_t v) {
         Vec3 sum;
@@ -82,6 +84,7 @@ double bilaplacian_deviation(const mesh::WorkMesh& mesh, const runtime::RunContr
             deviation[v] = std::abs(dot(normalized(normal), minus_ring_mean(laplacian, v)));
         }
     });
+    control.check();
     return 1.4826 * quantile(deviation, 0.5) / 1.36;
 }
 

@@ -102,8 +102,10 @@ class NoisyFlow {
             const PricedFit fit = fit_priced(m, weight, price);
             return partition::RegionScore{fit.length, fit.energy, fit.parameters};
         };
-        runtime::parallel_for(regions_.size(), 64,
-                              [&](std::size_t r) { regions_[r].score = score(regions_[r].moments); });
+        runtime::parallel_blocks(regions_.size(), 64, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t r = begin; r < end; ++r) regions_[r].score = score(regions_[r].moments);
+        });
         partition::MergeRules rules;
         rules.misfit = misfit_;
         partition::Merging merging = partition::merge_pairs(

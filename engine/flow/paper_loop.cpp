@@ -28,7 +28,7 @@ VariationalLoop::VariationalLoop(const FlowInput& input)
       passage_{&input.mesh, input.features, {}},
       policy_(method_policy(input.options, [this] { control_->check(); })),
       flood_(passage_) {
-    if (input.features == nullptr && input.control.should_stop()) {
+    if (input.features == nullptr) {
         components_ = mesh_.components;
         component_count_ = mesh_.component_count;
     } else {
@@ -76,6 +76,7 @@ void VariationalLoop::start_from_labels(const partition::Labels& labels) {
     state_.fits.resize(count);
     state_.stamps.resize(count);
     state_.density.assign(labels.size(), 0);
+    control_->check();
     list_faces();
     control_->check();
     for (const auto& faces : faces_) state_.seeds.push_back(faces.front());
@@ -168,6 +169,21 @@ std::vector<std::uint32_t> VariationalLoop::affected_regions() const {
     return regions;
 }
 
+/// Different faces, ascending. Of many of them a look at all faces is less than a sort.
+void VariationalLoop::sort_faces(std::vector<std::uint32_t>& faces) const {
+    constexpr std::size_t many = 16;
+    if (many * faces.size() < mesh_.face_count()) {
+        std::sort(faces.begin(), faces.end());
+        return;
+    }
+    std::vector<std::uint8_t> chosen(mesh_.face_count(), 0);
+    for (const std::uint32_t f : faces) chosen[f] = 1;
+    faces.clear();
+    for (std::size_t f = 0; f < chosen.size(); ++f) {
+        if (chosen[f] != 0) faces.push_back(static_cast<std::uint32_t>(f));
+    }
+}
+
 void VariationalLoop::regroup(const std::vector<std::uint32_t>& regions) {
     std::vector<partition::SeededRegion> seeded;
     std::vector<std::uint32_t> faces;
@@ -176,10 +192,13 @@ void VariationalLoop::regroup(const std::vector<std::uint32_t>& regions) {
         faces.insert(faces.end(), faces_[r].begin(), faces_[r].end());
         faces_[r].clear();
     }
-    std::sort(faces.begin(), faces.end());
+    control_->check();
+    sort_faces(faces);
+    control_->check();
     std::vector<std::int32_t> before(faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i) before[i] = state_.labels[faces[i]];
     flood_.run(seeded, faces, policy_.metric, state_.labels, state_.density, *control_);
+    control_->check();
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const auto old_region = static_cast<std::size_t>(before[i]);
         const auto new_region = static_cast<std::size_t>(state_.labels[faces[i]]);

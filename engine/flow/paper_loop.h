@@ -84,6 +84,7 @@ class VariationalLoop {
 
   private:
     std::vector<std::uint32_t> affected_regions() const;
+    void sort_faces(std::vector<std::uint32_t>& faces) const;
     void regroup(const std::vector<std::uint32_t>& regions);
     void fit_regions();
     void update_seeds();

@@ -51,22 +51,6 @@ std::size_t matching_edge(const WorkMesh& mesh, std::size_t f, std::size_t k) no
     return match;
 }
 
-VertexFaces vertex_faces(const WorkMesh& mesh) {
-    VertexFaces result;
-    result.begin.assign(mesh.vertex_count() + 1, 0);
-    for (const auto& t : mesh.faces) {
-        for (const std::uint32_t v : t) ++result.begin[v];
-    }
-    runtime::exclusive_scan(result.begin);
-    result.face.resize(3 * mesh.face_count());
-    // Filled from the back, the ends become the begins.
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) result.begin[v] = result.begin[v + 1];
-    for (std::size_t f = mesh.face_count(); f-- > 0;) {
-        for (const std::uint32_t v : mesh.faces[f]) result.face[--result.begin[v]] = static_cast<std::uint32_t>(f);
-    }
-    return result;
-}
-
 std::vector<std::int32_t> labels_to_input(const WorkMesh& mesh, const std::vector<std::int32_t>& labels) {
     std::vector<std::int32_t> result(mesh.label_source.size());
     runtime::parallel_for(result.size(), block, [&](std::size_t i) {

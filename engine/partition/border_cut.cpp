@@ -16,31 +16,44 @@ class BorderCutter {
         : passage_(passage), mesh_(*passage.mesh), labels_(labels), fits_(fits), options_(options) {}
 
     /// Pairs of regions with their border faces, ascending.
-    std::vector<BorderCut> pairs(std::span<const std::uint32_t> border_faces) const {
+    std::vector<BorderCut> pairs(std::span<const std::uint32_t> border_faces,
+                                 const runtime::RunControl& control) const {
         struct Key {
-            std::int32_t a, b;
+            std::int32_t b;
             std::uint32_t face;
         };
-        std::vector<Key> keys;
-        for (const std::uint32_t f : border_faces) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t g = passage_.across(f, k);
-                const std::int32_t other = g < 0 ? -1 : labels_[static_cast<std::size_t>(g)];
-                if (other >= 0 && other != labels_[f]) {
-                    keys.push_back({std::min(other, labels_[f]), std::max(other, labels_[f]), f});
+        std::size_t polls = 0;
+        const auto for_sides = [&](const auto& visit) {
+            for (const std::uint32_t f : border_faces) {
+                control.check_often(polls);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t g = passage_.across(f, k);
+                    const std::int32_t other = g < 0 ? -1 : labels_[static_cast<std::size_t>(g)];
+                    if (other >= 0 && other != labels_[f]) visit(f, std::minmax(other, labels_[f]));
                 }
             }
-        }
-        std::sort(keys.begin(), keys.end(), [](const Key& x, const Key& y) {
-            return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.face < y.face;
+        };
+        // Sorted by the smaller region first, by counting: one sort of all would take long, and could not be stopped.
+        std::vector<std::size_t> begin(fits_.size() + 1, 0);
+        for_sides([&](std::uint32_t, const auto& pair) { ++begin[static_cast<std::size_t>(pair.first)]; });
+        std::vector<Key> keys(runtime::exclusive_scan(begin));
+        std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+        for_sides([&](std::uint32_t f, const auto& pair) {
+            keys[next[static_cast<std::size_t>(pair.first)]++] = {pair.second, f};
         });
         std::vector<BorderCut> result;
-        for (const Key& key : keys) {
-            if (result.empty() || result.back().a != key.a || result.back().b != key.b) {
-                result.push_back({key.a, key.b, {}});
+        for (std::size_t a = 0; a + 1 < begin.size(); ++a) {
+            control.check_often(polls);
+            const auto first = keys.begin() + static_cast<std::ptrdiff_t>(begin[a]);
+            const auto last = keys.begin() + static_cast<std::ptrdiff_t>(begin[a + 1]);
+            std::sort(first, last, [](const Key& x, const Key& y) { return x.b != y.b ? x.b < y.b : x.face < y.face; });
+            for (auto key = first; key != last; ++key) {
+                if (key == first || key->b != result.back().b) {
+                    result.push_back({static_cast<std::int32_t>(a), key->b, {}});
+                }
+                std::vector<std::uint32_t>& faces = result.back().faces;
+                if (faces.empty() || faces.back() != key->face) faces.push_back(key->face);
             }
-            std::vector<std::uint32_t>& faces = result.back().faces;
-            if (faces.empty() || faces.back() != key.face) faces.push_back(key.face);
         }
         return result;
     }
@@ -136,7 +149,7 @@ std::vector<BorderCut> cut_borders(const Passage& passage, const Labels& labels,
                                    std::span<const quadric::RegionFit> fits, const BorderCutOptions& options,
                                    std::span<const std::uint32_t> border_faces, const runtime::RunControl& control) {
     const BorderCutter cutter(passage, labels, fits, options);
-    std::vector<BorderCut> cuts = cutter.pairs(border_faces);
+    std::vector<BorderCut> cuts = cutter.pairs(border_faces, control);
     runtime::PerThread<BorderCutter::Scratch> scratch;
     runtime::parallel_for(cuts.size(), 1, [&](std::size_t i) {
         control.check();

@@ -148,6 +148,7 @@ Leaves grow_leaves(const Passage& passage, const LeafOptions& options, const run
         offset[begin / block_faces] = BlockGrower(passage, options, leaves.labels, begin, end).grow();
     });
     leaves.count = runtime::exclusive_scan(offset);
+    control.check();
     runtime::parallel_blocks(faces, block_faces, [&](std::size_t begin, std::size_t end) {
         const auto first = static_cast<std::int32_t>(offset[begin / block_faces]);
         for (std::size_t f = begin; f < end; ++f) {

@@ -241,7 +241,9 @@ class Merger {
 
 std::vector<MergeRegion> measure_regions(const mesh::WorkMesh& mesh, const Labels& labels, std::size_t count,
                                          const Scorer& scorer, const runtime::RunControl& control) {
+    control.check();
     const RegionFaces faces = region_faces(labels, count);
+    control.check();
     std::vector<MergeRegion> regions(count);
     runtime::parallel_blocks(count, region_grain, [&](std::size_t begin, std::size_t end) {
         std::size_t polled = 0;

@@ -112,6 +112,7 @@ class Relaxer {
             result.push_back({labels_[f], static_cast<std::uint32_t>(f), 1});
             fitted_labels_[f] = labels_[f];
         }
+        control_.check();
         std::sort(result.begin(), result.end(), [](const Change& a, const Change& b) {
             return a.region != b.region ? a.region < b.region : a.face < b.face;
         });
@@ -211,6 +212,7 @@ class Relaxer {
 
     double border_length() const {
         const auto of_faces = [&](std::size_t begin, std::size_t end) {
+            control_.check();
             double sum = 0;
             for (std::size_t f = begin; f < end; ++f) {
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -355,6 +357,7 @@ class Relaxer {
             });
             std::vector<std::uint32_t> waiting;
             if (take_turns) waiting = wait_for_neighbors(work, decided);
+            control_.check();
             work = apply(work, decided);
             moved = moved || !work.empty();
             for (const std::uint32_t f : waiting) {
@@ -369,6 +372,7 @@ class Relaxer {
     /// Of two neighbours that both want to move the one with the smaller gain stays for this sweep.
     std::vector<std::uint32_t> wait_for_neighbors(const std::vector<std::uint32_t>& work,
                                                   std::vector<FaceChoice>& decided) {
+        control_.check();
         for (std::size_t i = 0; i < work.size(); ++i) {
             gain_[work[i]] = decided[i].label != labels_[work[i]] ? decided[i].gain : 0;
         }
@@ -417,6 +421,7 @@ class Relaxer {
 
     /// Of every changed region the largest part stays; the rest is flooded again from around it.
     void repair_connectivity() {
+        control_.check();
         regions_ = region_faces(labels_, count_);
         std::vector<std::uint32_t> changed;
         for (std::uint32_t r = 0; r < count_; ++r) {
@@ -492,12 +497,14 @@ class Relaxer {
             const double e = energy(f, label);
             claims.push({std::isnan(e) ? std::numeric_limits<double>::max() : e, static_cast<std::uint32_t>(f), label});
         };
+        std::size_t polled = 0;
         for (const std::uint32_t f : orphans) {
+            control_.check_often(polled);
             for (std::size_t k = 0; k < 3; ++k) {
                 if (const std::int32_t label = label_across(f, k); label >= 0) claim(f, label);
             }
         }
-        for (std::size_t polled = 0; !claims.empty();) {
+        while (!claims.empty()) {
             control_.check_often(polled);
             const Claim c = claims.top();
             claims.pop();

@@ -25,7 +25,8 @@ bool takes_part(double area) noexcept {
 
 }  // namespace
 
-FacePacks::FacePacks(const TriangleSoup& region, bool with_moments) : faces_(region.size()) {
+FacePacks::FacePacks(const TriangleSoup& region, bool with_moments, const std::function<void()>* poll)
+    : poll_(poll), faces_(region.size()) {
     // Centroid, and a radius good enough to scale with, about a point of the region: no cancellation far from 0.
     Vec3 reference, first;
     double second = 0;
@@ -55,6 +56,7 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments) : faces_(reg
     Pack normal_area{};
     const double area_scale = scale_ * scale_;
     for (std::size_t p = 0; p < pack_count_; ++p) {
+        if (p % polled_packs == 0) poll_packs();
         FacePack f{};
         const std::size_t begin = p * lanes, count = std::min(lanes, faces_ - begin);
         for (std::size_t l = 0; l < count; ++l) {
@@ -93,6 +95,7 @@ Candidate FacePacks::prepare(const Coefficients& c) {
     lengths_.resize(pack_count_ * lanes);
     Pack mean_pack{};
     for (std::size_t p = 0; p < pack_count_; ++p) {
+        if (p % polled_packs == 0) poll_packs();
         Pack x[3], length;
         centroid(packs_[p], x);
         const PackGradient g(c.data(), x[0], x[1], x[2]);
@@ -117,20 +120,23 @@ Candidate FacePacks::prepare(const Coefficients& c) {
 void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments& out_first,
                         Moments& out_second) const {
     LaneMoments sum_first, sum_second;
-    for (const FacePack& f : packs()) {
-        Pack x[3], t[35];
-        centroid(f, x);
-        triangle_moments(&f.corners[0], f.area, t);
-        const auto add = [&](const Candidate& candidate, LaneMoments& sum) {
-            const PackGradient g(candidate.c.data(), x[0], x[1], x[2]);
-            Pack length;
-            square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
-            maximum(length, Pack{} + candidate.gradient_floor, length);
-            const Pack w1 = 1.0 / length, w2 = w1 * w1;
-            sum.add(t, f.normal, w2, w1);
-        };
-        add(first, sum_first);
-        add(second, sum_second);
+    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
+        poll_packs();
+        for (const FacePack& f : packs(part)) {
+            Pack x[3], t[35];
+            centroid(f, x);
+            triangle_moments(&f.corners[0], f.area, t);
+            const auto add = [&](const Candidate& candidate, LaneMoments& sum) {
+                const PackGradient g(candidate.c.data(), x[0], x[1], x[2]);
+                Pack length;
+                square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
+                maximum(length, Pack{} + candidate.gradient_floor, length);
+                const Pack w1 = 1.0 / length, w2 = w1 * w1;
+                sum.add(t, f.normal, w2, w1);
+            };
+            add(first, sum_first);
+            add(second, sum_second);
+        }
     }
     for (Moments* m : {&out_first, &out_second}) {
         *m = moments_;
@@ -147,12 +153,15 @@ void FacePacks::evaluate(Candidate& candidate) const {
     const Coefficients& c = candidate.c;
     const Pack floor = Pack{} + candidate.gradient_floor;
     Pack distance{}, normal{}, against{};
-    for (const FacePack& f : packs()) {
-        PackEnergy energy;
-        pack_energy(c.data(), f, floor, energy);
-        distance += energy.distance;
-        normal += energy.normal;
-        against += f.area - energy.along;
+    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
+        poll_packs();
+        for (const FacePack& f : packs(part)) {
+            PackEnergy energy;
+            pack_energy(c.data(), f, floor, energy);
+            distance += energy.distance;
+            normal += energy.normal;
+            against += f.area - energy.along;
+        }
     }
     candidate.distance = std::max(0.0, horizontal_sum(distance) * (1.0 / 180));
     candidate.normal = std::max(0.0, horizontal_sum(normal) * (1.0 / 12));
@@ -165,12 +174,15 @@ double FacePacks::share_on_other_sheet(const Coefficients& c) const {
     if (sheets.kind() == Sheets::Kind::connected) return 0;
     if (sheets.kind() == Sheets::Kind::imaginary) return 1;
     double second = 0, whole = 0;
-    for (const FacePack& f : packs()) {
-        Pack x[3];
-        centroid(f, x);
-        for (std::size_t l = 0; l < lanes; ++l) {
-            whole += f.area[l];
-            if (sheets.foot_on_second_side(c, {x[0][l], x[1][l], x[2][l]})) second += f.area[l];
+    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
+        poll_packs();
+        for (const FacePack& f : packs(part)) {
+            Pack x[3];
+            centroid(f, x);
+            for (std::size_t l = 0; l < lanes; ++l) {
+                whole += f.area[l];
+                if (sheets.foot_on_second_side(c, {x[0][l], x[1][l], x[2][l]})) second += f.area[l];
+            }
         }
     }
     return std::min(second, whole - second) / whole;

@@ -7,7 +7,9 @@
 #include "quadric/pack_energy.h"
 #include "quadric/region_fit.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -27,7 +29,9 @@ class FacePacks {
   public:
     /// Finds the frame, fills the packs and the unit-weight moments. Faces of no (or no finite) area do not take part.
     /// with_moments = false leaves the moments' degrees above 0 and the normal moments out, where nothing is fitted.
-    explicit FacePacks(const TriangleSoup& region, bool with_moments = true);
+    /// `poll` is called every few thousand faces of a pass and may throw.
+    explicit FacePacks(const TriangleSoup& region, bool with_moments = true,
+                       const std::function<void()>* poll = nullptr);
 
     double area() const noexcept { return area_; }  ///< in the unit frame
     const Vec3& centre() const noexcept { return centre_; }
@@ -47,7 +51,16 @@ class FacePacks {
     double share_on_other_sheet(const Coefficients& c) const;
 
   private:
-    std::span<const FacePack> packs() const noexcept { return {packs_.get(), pack_count_}; }
+    static constexpr std::size_t polled_packs = 1024;
+    /// Those from `part` on that are passed over between two polls.
+    std::span<const FacePack> packs(std::size_t part) const noexcept {
+        return {packs_.get() + part, std::min(polled_packs, pack_count_ - part)};
+    }
+    void poll_packs() const {
+        if (poll_ != nullptr && *poll_) (*poll_)();
+    }
+
+    const std::function<void()>* poll_;
 
     std::unique_ptr<FacePack[]> packs_;  // not a vector: written once, without being cleared first
     std::size_t pack_count_ = 0;

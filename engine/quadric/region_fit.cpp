@@ -16,7 +16,7 @@ class RegionFitter {
     RegionFitter(const TriangleSoup& region, const RegionFitOptions& options)
         : soup_(region),
           options_(options),
-          faces_(region),
+          faces_(region, true, &options.poll),
           moments_(faces_.moments()),
           weight_(scaled_weight(options.weight, faces_.scale())) {}
 
