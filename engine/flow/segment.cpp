@@ -4,6 +4,8 @@
 #include "flow/dispatch.h"
 #include "flow/finish.h"
 #include "flow/flow.h"
+#include "flow/memory_estimate.h"
+#include "flow/noise.h"
 #include "flow/project.h"
 #include "flow/representable.h"
 #include "mesh/features.h"
@@ -11,6 +13,7 @@
 #include "runtime/parallel.h"
 #include "runtime/run_control.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -32,18 +35,28 @@ std::size_t peak_resident_bytes() {
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Upper bound of what a job holds at its peak, a face; bench/RESULTS.md has the measurement.
-constexpr std::size_t bytes_per_face = 600;
+int threads_of(const Context* context) {
+    const int wanted = context != nullptr ? context->threads() : 0;
+    return wanted > 0 ? std::min(wanted, runtime::arena_threads()) : runtime::arena_threads();
+}
 
-void check_memory(const MeshView& mesh, const Context* context) {
+void check_memory(const MeshView& mesh, const Options& options, const Context* context, flow::Surfaces surfaces) {
     if (!context || context->memory_limit() == 0) return;
-    const std::size_t need = mesh.face_count() * bytes_per_face;
+    const std::size_t need = flow::estimated_bytes(mesh, options, threads_of(context), surfaces);
     if (need > context->memory_limit()) {
-        throw Error(ErrorCode::memory_limit, "segmenting " + std::to_string(mesh.face_count()) + " faces needs about " +
-                                                 std::to_string(need >> 20) + " MiB, the limit is " +
+        throw Error(ErrorCode::memory_limit, "segmenting " + std::to_string(mesh.face_count()) + " faces" +
+                                                 (surfaces == flow::Surfaces::noisy ? " of a noisy mesh" : "") +
+                                                 " needs about " + std::to_string(need >> 20) + " MiB, the limit is " +
                                                  std::to_string(context->memory_limit() >> 20) +
                                                  " MiB; raise the limit or simplify the mesh first");
     }
+}
+
+/// Only now can it be told whether the mesh is noisy, which takes more.
+void check_memory_of_noise(const MeshView& view, const flow::FlowInput& input, const Context* context) {
+    if (!context || context->memory_limit() == 0 || !flow::noise_matters(input.options)) return;
+    if (!flow::estimate_noise(input.mesh, input.control).noisy()) return;
+    check_memory(view, input.options, context, flow::Surfaces::noisy);
 }
 
 /// What a run that was stopped before there was any partition returns: one region of everything.
@@ -63,7 +76,8 @@ Segmentation nothing_yet(const MeshView& mesh, bool deadline) {
     return result;
 }
 
-Segmentation segment_in_arena(const MeshView& view, const Options& options, const runtime::RunControl& control) {
+Segmentation segment_in_arena(const MeshView& view, const Options& options, const Context* context,
+                              const runtime::RunControl& control) {
     const auto start = Clock::now();
     Segmentation result;
     try {
@@ -75,6 +89,7 @@ Segmentation segment_in_arena(const MeshView& view, const Options& options, cons
         const double prepared = seconds_since(start);
         control.report(Phase::fine, 0.2);
         const flow::FlowInput input{mesh, features ? &*features : nullptr, options, control};
+        check_memory_of_noise(view, input, context);
         flow::FlowResult flow = flow::run_flow(input);
         const double flowed = seconds_since(start);
         control.report(Phase::post, 0.9, flow.regions);
@@ -102,11 +117,11 @@ Segmentation segment(const MeshView& mesh, const Options& options, Context* cont
         for (const std::string& problem : problems) text += (text.empty() ? "" : " ") + problem;
         throw Error(ErrorCode::invalid_argument, text);
     }
-    check_memory(mesh, context);
+    check_memory(mesh, options, context, flow::Surfaces::clean);
     const runtime::RunControl control(context);
     Segmentation result;
     runtime::in_arena(context ? context->threads() : 0, [&] {
-        result = segment_in_arena(mesh, options, control);
+        result = segment_in_arena(mesh, options, context, control);
         result.threads = runtime::arena_threads();
     });
     // The flows know that they were stopped; why, the context knows best.
