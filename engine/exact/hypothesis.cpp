@@ -3,6 +3,7 @@
 #include "exact/face_fit.h"
 #include "surface/fit.h"
 #include "surface/jets.h"
+#include "surface/torus_family.h"
 
 #include <algorithm>
 #include <array>
@@ -23,6 +24,7 @@ struct PatchSizes {
 constexpr PatchSizes disc_sizes{16, 40, {8, 4}}, row_sizes{8, 24, {5, 3}};
 constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
                            SurfaceType::torus};
+constexpr std::size_t enough_for_torus = 10;
 constexpr double most_gap = 0.3;
 constexpr double hopeless = 1e300;
 
@@ -145,6 +147,14 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
     return cost;
 }
 
+/// One question instead of four.
+bool may_be_curved(const Scene& scene, const PatchPoints& p, double tolerance, bool coarse,
+                   const surface::FitOptions& options) {
+    if (p.points.size() < enough_for_torus || p.jet_normals.empty()) return true;
+    const std::span<const Vec3> more = coarse ? std::span<const Vec3>(p.face_normals) : std::span<const Vec3>();
+    return surface::may_lie_on_torus({p.points, p.jet_normals, {}}, more, {tolerance, scene.tolerances.trim}, options);
+}
+
 }  // namespace
 
 bool at_precision(const Scene& scene, const Candidate& candidate) {
@@ -244,6 +254,9 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     options.wanted = tolerance;
     for (const SurfaceType type : types) {
         if (p.points.size() < static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 3) continue;
+        // Most of what is no plane lies on none of the other types either. Planes fit at little cost, whatever lies
+        // off.
+        if (type == types[1] && !best && !may_be_curved(scene, p, tolerance, coarse, options)) return std::nullopt;
         for (const std::vector<Vec3>* normals : {&p.jet_normals, &p.face_normals}) {
             if (normals->empty()) continue;
             // Height fields over the mean plane are poor only where facets turn far; planes and spheres start from

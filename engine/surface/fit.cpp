@@ -23,37 +23,6 @@ bool is_direct(SurfaceType type) {
     return type <= SurfaceType::torus;
 }
 
-/// A data point near which the frame of a start is well-conditioned.
-Vec3 anchor(const Surface& s, const LocalPoints& p) {
-    double best = std::numeric_limits<double>::infinity();
-    Vec3 anchor;
-    const Vec3 point = to_vec3(s.point), axis = to_vec3(s.axis);
-    double mean_rho = 0;
-    if (s.type == SurfaceType::cone) {
-        for (std::size_t i = 0; i < p.size(); ++i) {
-            const Vec3 u = p.point(i) - point;
-            mean_rho += norm(u - dot(u, axis) * axis) / double(p.size());
-        }
-    }
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        const Vec3 x = p.point(i), u = x - point;
-        double cost = norm(x);
-        const double z = dot(u, axis), rho = norm(u - z * axis);
-        if (s.type == SurfaceType::cone && rho < 0.5 * mean_rho) cost += 10;
-        if (s.type == SurfaceType::torus) {
-            // Where the normal is parallel to the axis the frame is singular.
-            const double w = rho - s.radius, length = std::hypot(w, z), cosine = length > 0 ? std::abs(w) / length : 0;
-            cost += cosine < 0.5 ? 10 * (1.5 - cosine) : 0;
-            if (!(rho > 0)) cost += 100;
-        }
-        if (cost < best) {
-            best = cost;
-            anchor = x;
-        }
-    }
-    return anchor;
-}
-
 /// `outward` (plane: the axis) after the normals, if there are any.
 void orient(Surface& s, const PointSet& p) {
     if (p.normals.size() != p.points.size()) return;

@@ -106,6 +106,36 @@ double sphere_error(const LocalPoints& p, const Vec3& centre, double radius) {
 
 }  // namespace
 
+Vec3 anchor(const Surface& s, const LocalPoints& p) {
+    double best = std::numeric_limits<double>::infinity();
+    Vec3 anchor;
+    const Vec3 point = to_vec3(s.point), axis = to_vec3(s.axis);
+    double mean_rho = 0;
+    if (s.type == SurfaceType::cone) {
+        for (std::size_t i = 0; i < p.size(); ++i) {
+            const Vec3 u = p.point(i) - point;
+            mean_rho += norm(u - dot(u, axis) * axis) / double(p.size());
+        }
+    }
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const Vec3 x = p.point(i), u = x - point;
+        double cost = norm(x);
+        const double z = dot(u, axis), rho = norm(u - z * axis);
+        if (s.type == SurfaceType::cone && rho < 0.5 * mean_rho) cost += 10;
+        if (s.type == SurfaceType::torus) {
+            // Where the normal is parallel to the axis the frame is singular.
+            const double w = rho - s.radius, length = std::hypot(w, z), cosine = length > 0 ? std::abs(w) / length : 0;
+            cost += cosine < 0.5 ? 10 * (1.5 - cosine) : 0;
+            if (!(rho > 0)) cost += 100;
+        }
+        if (cost < best) {
+            best = cost;
+            anchor = x;
+        }
+    }
+    return anchor;
+}
+
 Surface start_plane(const LocalPoints& p) {
     Vec3 n = eigen_decomposition(covariance_of_points(p)).vectors[0];
     if (dot(n, mean_normal(p)) < 0) n = -n;

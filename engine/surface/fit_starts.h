@@ -6,6 +6,9 @@
 
 namespace quadseg::surface {
 
+/// A data point near which the frame of a start is well-conditioned.
+Vec3 anchor(const Surface& s, const LocalPoints& p);
+
 Surface start_plane(const LocalPoints& p);
 Surface start_sphere(const LocalPoints& p);
 Surface start_cylinder(const LocalPoints& p);

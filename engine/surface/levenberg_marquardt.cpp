@@ -22,6 +22,11 @@ constexpr double no_effect = 1e-15;
 constexpr std::size_t few = 48;
 // Steps in a row that leave the median where it is, after which it is not going to fall much.
 constexpr int idle_steps = 3;
+// Where the only question is whether the points come close: a step that promises less than this share of the cost leads
+// nowhere, unless the points are this near already (in strays), where the weights may yet tell the exact ones.
+constexpr double least_promise = 0.25, near_enough = 0.25;
+// In scales, three medians each: more than a smooth misfit spreads.
+constexpr double outlying = 1.5;
 
 template <int K>
 struct NormalEquations {
@@ -170,13 +175,35 @@ class Problem {
         return true;
     }
 
-    Adjustment run(const ShapeFrame& start, const FitOptions& options) {
+    bool is_close(const double* distance, const Closeness& goal) const {
+        const std::size_t n = p_.size();
+        const double tolerance = goal.tolerance / p_.extent, stray = goal.stray / p_.extent;
+        std::size_t within = 0, nearly = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double d = std::abs(distance[i]);
+            within += d <= tolerance ? 1 : 0;
+            nearly += d <= stray ? 1 : 0;
+        }
+        const auto quantile = [n](double q) { return std::min(std::size_t(q * double(n)), n - 1) + 1; };
+        return within >= quantile(0.9) || (within >= quantile(0.5) && nearly >= quantile(0.97));
+    }
+
+    /// Some points lie far from where the others do: they may be what holds a fit up, and the weights need time to
+    /// tell.
+    bool has_outliers(const double* distance, double scale) const {
+        return std::any_of(distance, distance + p_.size(), [&](double d) { return std::abs(d) > outlying * scale; });
+    }
+
+    /// goal: null, or stop where the points are so close or fall too slowly.
+    Adjustment run(const ShapeFrame& start, const FitOptions& options, const Closeness* goal) {
         Adjustment best;
         best.frame = start;
         distances(start, p_.distance);
         double scale = scale_of(p_.distance), current = cost(p_.distance, scale), damping = first_damping;
         best.finite = std::isfinite(current);
         if (!best.finite) return best;
+        best.close = goal && is_close(p_.distance, *goal);
+        if (best.close) return best;
         const double hopeless = options.hopeless / p_.extent, wanted = options.wanted / p_.extent;
         double smallest = 0;
         int plateau = 0, accepted = 0, idle = 0;
@@ -192,6 +219,9 @@ class Problem {
                 if (damping > most_damping) break;
                 continue;
             }
+            if (goal && scale > 3 * near_enough * goal->stray / p_.extent &&
+                promise(e, step) < least_promise * current && !has_outliers(p_.distance, scale))
+                break;
             limit(step);
             const ShapeFrame next = stepped(best.frame, step);
             distances(next, p_.trial);
@@ -207,6 +237,8 @@ class Problem {
             std::swap(p_.distance, p_.trial);
             fresh = false;
             ++accepted;
+            best.close = goal && is_close(p_.distance, *goal);
+            if (best.close) return best;
             const double gain = current - cost_there;
             damping = damping * 0.02 < least_damping ? 0 : damping * 0.02;
             const double scale_there = robust_ ? scale_of(p_.distance) : scale;
@@ -236,6 +268,13 @@ class Problem {
     }
 
   private:
+    /// By how much the cost falls with a step if it is as the normal equations say.
+    static double promise(const NormalEquations<K>& e, const double* step) {
+        double slope = 0;
+        for (int i = 0; i < K; ++i) slope -= e.g[i] * step[i];
+        return 0.5 * slope;
+    }
+
     /// Rotations of more than half a radian leave the neighbourhood in which the derivatives mean something.
     static void limit(double* step) {
         double turn = 0;
@@ -285,21 +324,36 @@ double median_magnitude(const double* values, std::size_t n, double* scratch) {
     return scratch[middle];
 }
 
-Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options) {
+namespace {
+
+Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options, const Closeness* goal) {
     switch (start.type) {
         case SurfaceType::plane:
-            return Problem<SurfaceType::plane>(points, options).run(start, options);
+            return Problem<SurfaceType::plane>(points, options).run(start, options, goal);
         case SurfaceType::sphere:
-            return Problem<SurfaceType::sphere>(points, options).run(start, options);
+            return Problem<SurfaceType::sphere>(points, options).run(start, options, goal);
         case SurfaceType::cylinder:
-            return Problem<SurfaceType::cylinder>(points, options).run(start, options);
+            return Problem<SurfaceType::cylinder>(points, options).run(start, options, goal);
         case SurfaceType::cone:
-            return Problem<SurfaceType::cone>(points, options).run(start, options);
+            return Problem<SurfaceType::cone>(points, options).run(start, options, goal);
         case SurfaceType::torus:
-            return Problem<SurfaceType::torus>(points, options).run(start, options);
+            return Problem<SurfaceType::torus>(points, options).run(start, options, goal);
         default:
             return {};
     }
+}
+
+}  // namespace
+
+Adjustment adjust_towards(const Closeness& goal, const ShapeFrame& start, LocalPoints& points,
+                          const FitOptions& options) {
+    FitOptions towards = options;
+    towards.wanted = goal.tolerance;
+    return adjust(start, points, towards, &goal);
+}
+
+Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options) {
+    return adjust(start, points, options, nullptr);
 }
 
 }  // namespace quadseg::surface

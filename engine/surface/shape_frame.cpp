@@ -61,6 +61,7 @@ bool frame_of(const Surface& s, const Vec3& near, SurfaceType type, ShapeFrame& 
         case SurfaceType::sphere:
             f.g = any_perpendicular(f.n);
             if (s.type == SurfaceType::sphere) f.curvature = 1 / s.radius;
+            if (type == SurfaceType::torus) f.minor_curvature = f.curvature;
             break;
         case SurfaceType::cylinder:
             f.g = axis;

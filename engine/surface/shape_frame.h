@@ -127,7 +127,7 @@ struct ShapeDistance {
 ShapeFrame stepped(const ShapeFrame& f, const double* step) noexcept;
 
 /// Frame of a typed surface at its point nearest to `near`. `type`: that of the surface or one that contains it
-/// (cylinder as cone, cone as torus). False where the surface has no such frame (zero or negative sizes, a point on an
+/// (cylinder as cone, all as torus). False where the surface has no such frame (zero or negative sizes, a point on an
 /// axis or apex).
 bool frame_of(const Surface& s, const Vec3& near, SurfaceType type, ShapeFrame& frame) noexcept;
 
