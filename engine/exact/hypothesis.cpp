@@ -24,7 +24,8 @@ struct PatchSizes {
 constexpr PatchSizes disc_sizes{16, 40, {8, 4}}, row_sizes{8, 24, {5, 3}};
 constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceType::sphere, SurfaceType::cone,
                            SurfaceType::torus};
-constexpr std::size_t enough_for_torus = 10;
+// With fewer points a torus says little, and asking costs as much as fitting.
+constexpr std::size_t enough_for_torus = 16;
 constexpr double most_gap = 0.3;
 constexpr double hopeless = 1e300;
 
