@@ -44,6 +44,7 @@ class CompleteMerger {
         runtime::parallel_for(parts_.size(), 16, [&](std::size_t r) {
             Part& part = parts_[r];
             part.fit = fits[r];
+            part.fit.total = part.fit.energy.hybrid(rules_.weight);  // relaxation may have weighed otherwise
             part.moments = moments[r];
             part.faces.assign(faces.face.begin() + faces.begin[r], faces.face.begin() + faces.begin[r + 1]);
             score(part.moments);

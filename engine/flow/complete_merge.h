@@ -22,8 +22,8 @@ struct CompleteMergeRules {
     double size_ratio = 8;     ///< beyond it the smaller region is tried under the larger one's surface as it is
 };
 
-/// Labels 0 … count−1 without gaps, with a complete fit and moments each. Returns the number of regions left; labels
-/// keep the lower number of a merged pair and are then compacted. Throws Stopped.
+/// Labels 0 … count−1 without gaps, with a complete fit (to whatever weight) and moments each. Returns the number of
+/// regions left; labels keep the lower number of a merged pair and are then compacted. Throws Stopped.
 std::size_t merge_by_complete_fits(const partition::Passage& passage, partition::Labels& labels,
                                    std::vector<quadric::RegionFit> fits, std::vector<partition::MergeRegion> moments,
                                    const CompleteMergeRules& rules, const runtime::RunControl& control);

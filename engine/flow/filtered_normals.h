@@ -1,5 +1,5 @@
-// Normals smoothed within smooth parts and kept apart across creases: to grow leaves by on scans, and for nothing else
-// (in an energy they round the creases).
+// Normals smoothed within smooth parts and kept apart across creases: to find regions by on scans, not to judge
+// them (in an energy of borders they round the creases).
 #pragma once
 
 #include "mesh/work_mesh.h"

@@ -1,5 +1,6 @@
 #include "flow/noise.h"
 
+#include "flow/filtered_normals.h"
 #include "mesh/vertex_faces.h"
 #include "runtime/parallel.h"
 
@@ -50,9 +51,14 @@ EdgeStatistics sample_edges(const mesh::WorkMesh& mesh) {
     return edges;
 }
 
+/// Averages over the ring that bring normals back even where noise is as large as the edges.
+constexpr int normal_averages = 4;
+
 /// Robust standard deviation of n·(I − S)²x, S the mean over the ring: low frequencies are gone, of white noise of
-/// standard deviation 1 remains 1.36.
-double bilaplacian_deviation(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
+/// standard deviation 1 remains 1.36. Normals of faces that are not smoothed would point along the noise and hide half
+/// of it.
+double bilaplacian_deviation(const mesh::WorkMesh& mesh, const std::vector<Vec3>& smoothed,
+                             const runtime::RunControl& control) {
     const mesh::VertexFaces incident = mesh::vertex_faces(mesh, control);
     control.check();
     const std::size_t vertices = mesh.vertex_count();
@@ -79,13 +85,28 @@ double bilaplacian_deviation(const mesh::WorkMesh& mesh, const runtime::RunContr
         for (std::size_t v = begin; v < end; ++v) {
             Vec3 normal;
             for (std::size_t i = incident.begin[v]; i < incident.begin[v + 1]; ++i) {
-                normal += mesh.normals[incident.face[i]] * mesh.areas[incident.face[i]];
+                normal += smoothed[incident.face[i]] * mesh.areas[incident.face[i]];
             }
             deviation[v] = std::abs(dot(normalized(normal), minus_ring_mean(laplacian, v)));
         }
     });
     control.check();
     return 1.4826 * quantile(deviation, 0.5) / 1.36;
+}
+
+/// Mean length of the edges as they were without noise: their projections onto the smoothed faces.
+double projected_edge(const mesh::WorkMesh& mesh, const std::vector<Vec3>& smoothed) {
+    const std::size_t stride = 1 + mesh.face_count() / most_samples;
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t f = 0; f < mesh.face_count(); f += stride) {
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 edge = mesh.corner(f, (k + 1) % 3) - mesh.corner(f, k);
+            sum += norm(edge - smoothed[f] * dot(edge, smoothed[f]));
+            ++count;
+        }
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
 /// Share of the samples that lie on multiples of 1/unit.
@@ -147,7 +168,10 @@ NoiseEstimate estimate_noise(const mesh::WorkMesh& mesh, const runtime::RunContr
     // Of white noise of standard deviation 1 edge the dihedral angles have 2.31; .2533 is the 20 % quantile of
     // |N(0,1)|.
     estimate.sigma = edges.low_angle / 0.2533 * edges.mean_length / 2.31;
-    if (estimate.noisy()) estimate.sigma = std::min(estimate.sigma, bilaplacian_deviation(mesh, control));
+    if (!estimate.noisy()) return estimate;
+    const std::vector<Vec3> smoothed = filtered_normals(mesh, normal_averages, 0, control);
+    estimate.sigma = std::min(estimate.sigma, bilaplacian_deviation(mesh, smoothed, control));
+    estimate.edge = projected_edge(mesh, smoothed);
     return estimate;
 }
 

@@ -1,6 +1,7 @@
 #include "flow/noisy.h"
 
 #include "flow/complete_merge.h"
+#include "flow/denoised_mesh.h"
 #include "flow/description_length.h"
 #include "flow/filtered_normals.h"
 #include "partition/absorb.h"
@@ -20,10 +21,27 @@ namespace {
 using partition::Labels;
 using partition::Passage;
 
-constexpr double moment_price = 4;    ///< of a parameter in units of the evidence, when merging on moments …
-constexpr double complete_price = 6;  ///< … and by complete fits
-/// What removed border is worth in a merge, of its price in relaxation: all of it would swallow small surfaces.
-constexpr double border_share = 0.3;
+/// What description lengths charge. Under light noise wrong merges are rare and crumbs of chance the danger; strong
+/// noise leaves true small surfaces little evidence: what asks for much more than chance would give loses them.
+struct Prices {
+    double moment = 4;          ///< of a parameter in units of the evidence, when merging on moments …
+    double complete = 4;        ///< … and by complete fits
+    double region = 1.5;        ///< of a region as such, times ln(faces)
+    double border_share = 0.3;  ///< what removed border is worth in a merge, of its price in relaxation: all of it
+                                ///< would swallow small surfaces
+    double relax_weight = 0.2;  ///< ω when faces move, of the ω of merging
+};
+constexpr Prices light_prices, strong_prices{3, 1.5, 0.3, 0.2, 0.33};
+constexpr double strong_from = 0.25, all_strong = 0.35;  ///< σ/h
+
+Prices prices_at(double ratio) {
+    const double s = std::clamp((ratio - strong_from) / (all_strong - strong_from), 0.0, 1.0);
+    const auto between = [s](double a, double b) { return a + (b - a) * s; };
+    const Prices &a = light_prices, &b = strong_prices;
+    return {between(a.moment, b.moment), between(a.complete, b.complete), between(a.region, b.region),
+            between(a.border_share, b.border_share), between(a.relax_weight, b.relax_weight)};
+}
+
 constexpr int relax_steps = 2;
 constexpr int cut_rings = 4;
 constexpr std::size_t smallest_region = 8;
@@ -35,8 +53,10 @@ class NoisyFlow {
         const double h = noise.edge;
         const double mean_area = mesh_.total_area / static_cast<double>(std::max<std::size_t>(1, mesh_.face_count()));
         ratio_ = noise.sigma / h;
+        prices_ = prices_at(ratio_);
         evidence_ = noise.sigma * noise.sigma * 2 * mean_area / input.options.detail;
-        // Maximum likelihood says h²/2 (MATH.md §3); .5 to 1 are all fine, less over-merges, more fragments.
+        // For merging .5 to 1 h² are all fine, less over-merges, more fragments. Where faces move it is the likelihood
+        // of independent vertices that counts: h²/8, with which E_d + ω E_n of a triangle is ∝ Σ d² over its vertices.
         weight_ = 0.75 * h * h;
         border_price_ = 2 * evidence_ / h;  // an edge of length h is worth a χ² of 2
         const double angle = misfit_angle(noise) * std::numbers::pi / 180;
@@ -50,6 +70,7 @@ class NoisyFlow {
         try {
             grow();
             if (!result_.partial) merge_on_moments();
+            judge_by_raw_mesh();
             if (!result_.partial) relax();
             for (int round = 0; round < 2 && !result_.partial; ++round) {
                 merge_completely();
@@ -68,11 +89,14 @@ class NoisyFlow {
 
   private:
     void grow() {
-        const bool light = ratio_ < 0.25;
+        const bool light = ratio_ < strong_from;
         const std::vector<Vec3> normals = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
+        denoised_ = denoised_mesh(mesh_, normals, control_);
+        passage_.mesh = &denoised_;
         partition::LeafOptions options;
         options.largest = light ? 24 : 48;
         options.smallest_coplanar = 0;
+        options.by_number = true;
         options.normals = normals;
         partition::Leaves leaves = partition::grow_leaves(passage_, options, control_);
         labels_ = std::move(leaves.labels);
@@ -91,14 +115,22 @@ class NoisyFlow {
         control_.report(Phase::fine, 0.3, count_);
     }
 
+    /// Regions have been found on the denoised mesh; whether they are right, and where they end, the raw one says.
+    void judge_by_raw_mesh() {
+        passage_.mesh = &mesh_;
+        denoised_ = {};
+        if (!result_.partial) measure();
+    }
+
     void measure() {
         regions_ = partition::measure_regions(
-            mesh_, labels_, count_, [](const quadric::Moments&) { return partition::RegionScore{}; }, control_);
+            *passage_.mesh, labels_, count_, [](const quadric::Moments&) { return partition::RegionScore{}; },
+            control_);
     }
 
     void merge_on_moments() {
         const partition::Scorer score = [weight = weight_,
-                                         price = moment_price * evidence_](const quadric::Moments& m) {
+                                         price = prices_.moment * evidence_](const quadric::Moments& m) {
             const PricedFit fit = fit_priced(m, weight, price);
             return partition::RegionScore{fit.length, fit.energy, fit.parameters};
         };
@@ -121,11 +153,11 @@ class NoisyFlow {
     void merge_completely() {
         CompleteMergeRules rules;
         rules.weight = weight_;
-        rules.price = complete_price * evidence_;
+        rules.price = prices_.complete * evidence_;
         // Chance has a place for a crumb at every face; under strong noise true small surfaces look no different.
-        rules.region_price = 1.5 * std::min(1.0, std::pow(0.16 / ratio_, 1.5)) * evidence_ *
+        rules.region_price = prices_.region * std::min(1.0, std::pow(0.16 / ratio_, 1.5)) * evidence_ *
                              std::log(static_cast<double>(mesh_.face_count()));
-        rules.border_reward = border_share * border_price_;
+        rules.border_reward = prices_.border_share * border_price_;
         rules.misfit = misfit_;
         count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), rules, control_);
         control_.report(Phase::fine, 0.7, count_);
@@ -159,7 +191,7 @@ class NoisyFlow {
 
     void relax() {
         partition::RelaxOptions options;
-        options.fit.weight = weight_;
+        options.fit.weight = prices_.relax_weight * weight_;
         options.fit.plane_tolerance = 0;
         options.border_price = border_price_;
         options.cut_rings = cut_rings;
@@ -197,10 +229,12 @@ class NoisyFlow {
     }
 
     const mesh::WorkMesh& mesh_;
+    mesh::WorkMesh denoised_;
     const runtime::RunControl& control_;
     Passage passage_;
     double ratio_ = 0;
     double evidence_ = 0;  ///< what one parameter takes from ∫d² on pure noise: σ² times the area of a vertex
+    Prices prices_;
     double weight_ = 0, border_price_ = 0, misfit_ = 0;
     Labels labels_;
     std::size_t count_ = 0;

@@ -6,7 +6,7 @@
 
 namespace quadseg::flow {
 
-/// Leaves on filtered normals → merging by description length, relaxed between its levels with a price on border
+/// On the denoised mesh: leaves → merging by description length; on the raw one: relaxation with a price on border
 /// length → merging by complete fits → clean-up. Finds the number of regions itself (options.regions is not looked at).
 FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise);
 

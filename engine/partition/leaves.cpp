@@ -4,6 +4,7 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -41,6 +42,12 @@ class BlockGrower {
         return g >= 0 && u >= begin_ && u < end_ && labels_[u] == unlabelled;
     }
     bool has_normal(std::size_t f) const noexcept { return squared_norm(normals_[f]) > 0.25; }
+
+    std::array<std::int32_t, 3> neighbors(std::size_t f) const noexcept {
+        std::array<std::int32_t, 3> g = {passage_.across(f, 0), passage_.across(f, 1), passage_.across(f, 2)};
+        if (options_.by_number) std::sort(g.begin(), g.end());
+        return g;
+    }
 
     void grow_coplanar() {
         std::vector<std::uint8_t> tried(end_ - begin_, 0);
@@ -83,9 +90,8 @@ class BlockGrower {
             queue_.assign(1, static_cast<std::uint32_t>(seed));
             labels_[seed] = count_;
             for (std::size_t head = 0; head < queue_.size() && queue_.size() < options_.largest; ++head) {
-                const std::size_t f = queue_[head];
-                for (std::size_t k = 0; k < 3 && queue_.size() < options_.largest; ++k) {
-                    const std::int32_t g = passage_.across(f, k);
+                for (const std::int32_t g : neighbors(queue_[head])) {
+                    if (!(queue_.size() < options_.largest)) break;
                     if (!is_free(g)) continue;
                     const auto u = static_cast<std::size_t>(g);
                     if (has_normal(u) && !(dot(mean, normals_[u]) >= cosine * norm(mean))) continue;

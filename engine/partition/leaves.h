@@ -28,9 +28,12 @@ struct Passage {
 };
 
 struct LeafOptions {
-    double angle = 8;                    ///< degrees between a face and the running mean normal of its leaf
-    std::size_t largest = 128;           ///< faces of a leaf that is not exactly plane
-    std::size_t smallest_coplanar = 9;   ///< exactly coplanar groups of at least so many faces are one leaf; 0: none
+    double angle = 8;                   ///< degrees between a face and the running mean normal of its leaf
+    std::size_t largest = 128;          ///< faces of a leaf that is not exactly plane
+    std::size_t smallest_coplanar = 9;  ///< exactly coplanar groups of at least so many faces are one leaf; 0: none
+    /// Neighbours join in the order of their numbers instead of a face's edges: the same leaves whichever corner of a
+    /// face the file names first.
+    bool by_number = false;
     std::span<const Vec3> normals = {};  ///< to grow by instead of the mesh's (filtered ones on scans); empty: those
 };
 

@@ -124,6 +124,19 @@ TEST(Noise, AFlatBaseDoesNotHideIt) {
     EXPECT_LT(result.regions, 12U);
 }
 
+TEST(Noise, IsFoundWhereItIsAsLargeAsTheEdges) {
+    // Raw normals point along such noise and would show half of it, edges are half longer than without it.
+    for (const double share : {0.5, 1.0}) {
+        const mesh::WorkMesh clean = generated("plate", 30000, 0);
+        const double edge = estimate_noise(clean, free_run).edge, sigma = share * edge;
+        const mesh::WorkMesh mesh = generated("plate", 30000, sigma / clean.frame.diagonal);
+        const NoiseEstimate noise = estimate_noise(mesh, free_run);
+        EXPECT_GT(noise.sigma, (share < 1 ? 0.8 : 0.65) * sigma) << share;
+        EXPECT_LT(noise.sigma, 1.1 * sigma) << share;
+        EXPECT_NEAR(noise.edge, edge, 0.3 * edge) << share;
+    }
+}
+
 TEST(Noise, PrecisionIsTheRoundingOfTheFile) {
     test::Shape shape = test::bumpy_grid(20);
     for (double& x : shape.positions) x += 0.123456789012345;
@@ -213,6 +226,13 @@ TEST(NoisyFlow, FindsShellAndLidOfAShakenCylinder) {
     double mixed = 0;
     for (std::size_t r = 0; r < result.regions; ++r) mixed += std::min(lid[r], shell[r]);
     EXPECT_LT(mixed, 0.02 * mesh.total_area);
+}
+
+TEST(NoisyFlow, FineMeshesUnderNoiseAsLargeAsTheirEdgesStayWhole) {
+    // The noise was taken for half of what it is, and chance for surfaces: a hundred regions and more.
+    EXPECT_LE(run(generated("shaft", 60000, 0.005)).regions, 25U);  // of 20
+    EXPECT_LE(run(generated("plate", 60000, 0.005)).regions, 75U);  // of 54
+    EXPECT_NEAR(static_cast<double>(run(generated("fillets", 60000, 0.002)).regions), 26, 3);
 }
 
 TEST(NoisyFlow, TheSameAtAnyThreadCount) {
