@@ -82,10 +82,12 @@ std::vector<quadric::RegionFit> fit_regions(const mesh::WorkMesh& mesh, const Re
                                             const quadric::RegionFitOptions& options,
                                             const runtime::RunControl& control) {
     std::vector<quadric::RegionFit> fits(regions.count());
+    quadric::RegionFitOptions polled = options;
+    polled.poll = [&control] { control.check(); };
     const auto fit = [&](std::size_t r, GatheredRegion& scratch) {
         control.check();
         gather(mesh, regions.face.data() + regions.begin[r], regions.size(r), scratch);
-        fits[r] = quadric::fit_region(scratch.soup(), options);
+        fits[r] = quadric::fit_region(scratch.soup(), polled);
     };
     // Runs of small regions share a task; a large one has a task of its own, so that no task waits behind it.
     constexpr std::size_t task_faces = 4096;

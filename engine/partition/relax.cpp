@@ -261,6 +261,8 @@ class Relaxer {
         std::sort(work.begin(), work.end(), [&](std::uint32_t a, std::uint32_t b) {
             return regions_.size(a) != regions_.size(b) ? regions_.size(a) > regions_.size(b) : a < b;
         });
+        quadric::RegionFitOptions fit = options_.fit;
+        fit.poll = [this] { control_.check(); };  // a region may have most of the mesh's faces
         runtime::parallel_for(work.size(), 1, [&](std::size_t i) {
             control_.check();
             const std::size_t r = work[i];
@@ -268,7 +270,7 @@ class Relaxer {
             if (moments_known && fit_plane_from_moments(r)) return;
             GatheredRegion gathered;
             gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
-            result_.fits[r] = quadric::fit_region(gathered.soup(), options_.fit);
+            result_.fits[r] = quadric::fit_region(gathered.soup(), fit);
         });
     }
 
