@@ -48,7 +48,8 @@ class Slot:
             folder.mkdir(parents=True, exist_ok=True)
         program = state / "bin" / f"fuzz_{self.target}"
         shutil.copy2(self.args.programs / f"fuzz_{self.target}", program)
-        command = [program, corpus, f"-artifact_prefix={found}/{self.target}-", "-timeout=0", "-print_final_stats=1"]
+        command = [program, corpus, f"-artifact_prefix={found}/{self.target}-", "-timeout=0", "-report_slow_units=1000000",
+                   "-print_final_stats=1"]
         if self.target.startswith("read"):
             command += ["-max_len=4096", f"-dict={HERE / 'formats.dict'}"]
         else:
