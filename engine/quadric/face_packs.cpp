@@ -19,6 +19,17 @@ void centroid(const FacePack& f, Pack* x) noexcept {
     for (std::size_t k = 0; k < 3; ++k) x[k] = (f.corners[k] + f.corners[k + 3] + f.corners[k + 6]) * (1.0 / 3);
 }
 
+/// Of a pack with centroids x and moments t.
+void add_weighted(const Candidate& candidate, const FacePack& f, const Pack* x, const Pack* t,
+                  LaneMoments& sum) noexcept {
+    const PackGradient g(candidate.c.data(), x[0], x[1], x[2]);
+    Pack length;
+    square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
+    maximum(length, Pack{} + candidate.gradient_floor, length);
+    const Pack w1 = 1.0 / length, w2 = w1 * w1;
+    sum.add(t, f.normal, w2, w1);
+}
+
 bool takes_part(double area) noexcept {
     return area > 0 && area <= std::numeric_limits<double>::max();
 }
@@ -126,16 +137,8 @@ void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments
             Pack x[3], t[35];
             centroid(f, x);
             triangle_moments(&f.corners[0], f.area, t);
-            const auto add = [&](const Candidate& candidate, LaneMoments& sum) {
-                const PackGradient g(candidate.c.data(), x[0], x[1], x[2]);
-                Pack length;
-                square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
-                maximum(length, Pack{} + candidate.gradient_floor, length);
-                const Pack w1 = 1.0 / length, w2 = w1 * w1;
-                sum.add(t, f.normal, w2, w1);
-            };
-            add(first, sum_first);
-            add(second, sum_second);
+            add_weighted(first, f, x, t, sum_first);
+            add_weighted(second, f, x, t, sum_second);
         }
     }
     for (Moments* m : {&out_first, &out_second}) {
@@ -145,8 +148,18 @@ void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments
 }
 
 void FacePacks::reweigh(const Candidate& candidate, Moments& out) const {
-    Moments unused;
-    reweigh(candidate, candidate, out, unused);
+    LaneMoments sum;
+    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
+        poll_packs();
+        for (const FacePack& f : packs(part)) {
+            Pack x[3], t[35];
+            centroid(f, x);
+            triangle_moments(&f.corners[0], f.area, t);
+            add_weighted(candidate, f, x, t, sum);
+        }
+    }
+    out = moments_;
+    sum.sum(out);
 }
 
 void FacePacks::evaluate(Candidate& candidate) const {
