@@ -6,6 +6,7 @@
 #include "quadric/triangle_moments.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -128,38 +129,32 @@ Candidate FacePacks::prepare(const Coefficients& c) {
     return result;
 }
 
-void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments& out_first,
-                        Moments& out_second) const {
-    LaneMoments sum_first, sum_second;
+template <std::size_t count>
+void FacePacks::reweigh_all(const std::array<const Candidate*, count>& candidates,
+                            const std::array<Moments*, count>& out) const {
+    std::array<LaneMoments, count> sums;
     for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
         poll_packs();
         for (const FacePack& f : packs(part)) {
             Pack x[3], t[35];
             centroid(f, x);
             triangle_moments(&f.corners[0], f.area, t);
-            add_weighted(first, f, x, t, sum_first);
-            add_weighted(second, f, x, t, sum_second);
+            for (std::size_t i = 0; i < count; ++i) add_weighted(*candidates[i], f, x, t, sums[i]);
         }
     }
-    for (Moments* m : {&out_first, &out_second}) {
-        *m = moments_;
-        (m == &out_first ? sum_first : sum_second).sum(*m);
+    for (std::size_t i = 0; i < count; ++i) {
+        *out[i] = moments_;
+        sums[i].sum(*out[i]);
     }
 }
 
+void FacePacks::reweigh(const Candidate& first, const Candidate& second, Moments& out_first,
+                        Moments& out_second) const {
+    reweigh_all<2>({&first, &second}, {&out_first, &out_second});
+}
+
 void FacePacks::reweigh(const Candidate& candidate, Moments& out) const {
-    LaneMoments sum;
-    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
-        poll_packs();
-        for (const FacePack& f : packs(part)) {
-            Pack x[3], t[35];
-            centroid(f, x);
-            triangle_moments(&f.corners[0], f.area, t);
-            add_weighted(candidate, f, x, t, sum);
-        }
-    }
-    out = moments_;
-    sum.sum(out);
+    reweigh_all<1>({&candidate}, {&out});
 }
 
 void FacePacks::evaluate(Candidate& candidate) const {

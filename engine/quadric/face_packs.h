@@ -8,6 +8,7 @@
 #include "quadric/region_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -51,6 +52,9 @@ class FacePacks {
     double share_on_other_sheet(const Coefficients& c) const;
 
   private:
+    template <std::size_t count>
+    void reweigh_all(const std::array<const Candidate*, count>& candidates,
+                     const std::array<Moments*, count>& out) const;
     static constexpr std::size_t polled_packs = 1024;
     /// Those from `part` on that are passed over between two polls.
     std::span<const FacePack> packs(std::size_t part) const noexcept {
