@@ -1,6 +1,7 @@
 #include "flow/faceted.h"
 
 #include "mesh/connected.h"
+#include "partition/face_choice.h"
 
 #include <algorithm>
 #include <array>
@@ -81,11 +82,6 @@ class FacetedParts {
         return surfaces_[static_cast<std::size_t>(region)].type == SurfaceType::plane;
     }
 
-    double edge_length(std::size_t f, std::size_t k) const {
-        const auto& v = mesh_.faces[f];
-        return norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]]);
-    }
-
     /// visit(face, edge, face across or −1) for every edge at which a region ends.
     template <class Visit>
     void for_borders(const Visit& visit) const {
@@ -115,7 +111,8 @@ class FacetedParts {
             area[own] += mesh_.areas[f];
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::int32_t g = mesh_.neighbors[f][k];
-                if (g < 0 || facet_[static_cast<std::size_t>(g)] != facet_[f]) perimeter[own] += edge_length(f, k);
+                if (g < 0 || facet_[static_cast<std::size_t>(g)] != facet_[f])
+                    perimeter[own] += partition::edge_length(mesh_, f, k);
             }
         }
         width_.resize(facets);
@@ -129,7 +126,7 @@ class FacetedParts {
         std::vector<double> length(surfaces_.size(), 0), gentle(surfaces_.size(), 0), wider(surfaces_.size(), 0);
         for_borders([&](std::size_t f, std::size_t k, std::int32_t g) {
             const auto r = static_cast<std::size_t>(explained_[f]);
-            const double edge = edge_length(f, k);
+            const double edge = partition::edge_length(mesh_, f, k);
             length[r] += edge;
             if (g < 0 || is_crease(creases_, f, k)) return;
             const std::int32_t other = explained_[static_cast<std::size_t>(g)];
@@ -220,7 +217,7 @@ class FacetedParts {
         }
         for_borders([&](std::size_t f, std::size_t k, std::int32_t g) {
             Border& border = borders[static_cast<std::size_t>(explained_[f])];
-            const double edge = edge_length(f, k);
+            const double edge = partition::edge_length(mesh_, f, k);
             const bool smooth = g >= 0 && !is_crease(creases_, f, k);
             if (smooth && explained_[static_cast<std::size_t>(g)] >= 0) {
                 // The last row of facets passes smoothly into the face that the surface is tangent to.
