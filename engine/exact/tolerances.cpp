@@ -12,6 +12,8 @@ namespace {
 constexpr int most_digits = 15;
 /// Fewer digits than this are round numbers that a modeller typed (a unit cube), not the rounding of a file.
 constexpr int least_digits = 5;
+/// Half a unit in the last place of a float32, relative to the number, at most.
+constexpr double float_rounding = 6e-8;
 /// Relative to the largest extent; coarser files are no longer clean meshes.
 constexpr double worst_precision = 2e-6;
 
@@ -47,6 +49,52 @@ double quantile(std::vector<double>& values, double share) {
     return values[static_cast<std::size_t>(k)];
 }
 
+/// Floats may have been read from a text file. Then most of them (the others were computed since) are what a number of
+/// so many decimals, or digits, is rounded to, which chance does to few.
+class DecimalsBehindFloats {
+  public:
+    void look_at(double x, int exponent) {
+        const double rounding = float_rounding * std::abs(x);
+        const auto fits = [&](int last) {
+            const double quantum = power_(last);
+            return std::abs(x - std::round(x / quantum) * quantum) <= rounding * (1 + 1e-6);
+        };
+        for (int i = 0; i < kinds; ++i) {
+            if (!fits(-i)) ++unlike_decimals_[static_cast<std::size_t>(i)];
+            if (!fits(exponent - i)) ++unlike_digits_[static_cast<std::size_t>(i)];
+        }
+        ++total_;
+        exponents_.push_back(exponent);
+    }
+
+    /// The step of the coarsest such numbers; 0: none.
+    double step() {
+        if (total_ == 0) return 0;
+        const double middle = power_(static_cast<int>(quantile(exponents_, 0.5)));
+        return std::max(first_that_fits(unlike_decimals_, 1, middle), first_that_fits(unlike_digits_, middle, middle));
+    }
+
+  private:
+    static constexpr int kinds = 12;
+    static constexpr double least_odds = 8;
+    using Counts = std::array<std::size_t, kinds>;
+    /// Of the steps unit, unit / 10 …; 0: none, or only what chance fits, or round numbers that somebody typed.
+    double first_that_fits(const Counts& unlike, double unit, double middle) const {
+        for (int i = 0; i < kinds; ++i) {
+            const double step = unit * power_(-i);
+            if (step <= least_odds * float_rounding * middle) return 0;
+            if (4 * unlike[static_cast<std::size_t>(i)] > total_) continue;
+            return step < middle * power_(2 - least_digits) ? step : 0;
+        }
+        return 0;
+    }
+
+    Counts unlike_decimals_{}, unlike_digits_{};
+    std::size_t total_ = 0;
+    std::vector<double> exponents_;
+    PowersOfTen power_;
+};
+
 }  // namespace
 
 double coordinate_precision(const mesh::WorkMesh& mesh) {
@@ -59,6 +107,7 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
     std::vector<double> digits, quanta, float_quanta;
     std::size_t floats = 0, total = 0;
     const PowersOfTen power;
+    std::vector<double> values, exponents;
     for (std::size_t v = 0; v < mesh.vertex_count(); v += stride) {
         const Vec3 p = mesh.frame.to_input(mesh.positions[v]);
         for (int k = 0; k < 3; ++k) {
@@ -66,8 +115,10 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
             if (std::abs(x) < 1e-6 * extent) continue;
             ++total;
             if (std::abs(x - static_cast<double>(static_cast<float>(x))) <= slack) ++floats;
-            float_quanta.push_back(std::abs(x) * 6e-8);
+            float_quanta.push_back(float_rounding * std::abs(x));
             const int exponent = static_cast<int>(std::floor(std::log10(std::abs(x))));
+            values.push_back(x);
+            exponents.push_back(exponent);
             digits.push_back(significant_digits(x, exponent, slack, power));
             quanta.push_back(power(exponent));
         }
@@ -75,7 +126,9 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
     if (total == 0) return 1e-16;
     double precision = 1e-16 * magnitude;
     if (floats * 100 >= total * 99) {
-        precision = std::max(precision, 0.29 * quantile(float_quanta, 0.5));
+        DecimalsBehindFloats decimals;
+        for (std::size_t i = 0; i < values.size(); ++i) decimals.look_at(values[i], static_cast<int>(exponents[i]));
+        precision = std::max({precision, 0.29 * quantile(float_quanta, 0.5), 0.29 * decimals.step()});
     }
     // Full doubles show most_digits; a text file shows the digits that it was printed with.
     const double most = quantile(digits, 0.9);

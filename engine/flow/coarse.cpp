@@ -5,6 +5,7 @@
 #include "flow/fast.h"
 #include "flow/paper.h"
 #include "flow/project_labels.h"
+#include "flow/simplified_mesh.h"
 #include "mesh/features.h"
 #include "simplify/decimate.h"
 
@@ -37,34 +38,6 @@ constexpr double organic_angle = 6;
 /// takes twice as long and ends no lower.
 constexpr double regions_overshoot = 1.4;
 constexpr double default_crease = 30;
-
-std::vector<double> flat(const std::vector<Vec3>& points) {
-    std::vector<double> numbers;
-    numbers.reserve(3 * points.size());
-    for (const Vec3& p : points) numbers.insert(numbers.end(), {p.x, p.y, p.z});
-    return numbers;
-}
-std::vector<std::uint32_t> flat(const std::vector<std::array<std::uint32_t, 3>>& faces) {
-    std::vector<std::uint32_t> numbers;
-    numbers.reserve(3 * faces.size());
-    for (const auto& f : faces) numbers.insert(numbers.end(), f.begin(), f.end());
-    return numbers;
-}
-
-/// A working mesh of the simplified one. Its own unit frame would be that of its own box: lengths are brought back to
-/// the frame of the fine mesh.
-mesh::WorkMesh build_coarse_mesh(const mesh::WorkMesh& fine, const simplify::Decimated& decimated,
-                                 const runtime::RunControl& control) {
-    const std::vector<double> positions = flat(decimated.positions);
-    const std::vector<std::uint32_t> triangles = flat(decimated.faces);
-    mesh::WorkMesh coarse = mesh::build_work_mesh({positions, triangles}, control);
-    const double area_scale = 1 / (coarse.frame.scale * coarse.frame.scale);
-    for (Vec3& p : coarse.positions) p = coarse.frame.to_input(p);
-    for (double& area : coarse.areas) area *= area_scale;
-    coarse.total_area *= area_scale;
-    coarse.frame = fine.frame;
-    return coarse;
-}
 
 /// Features of the simplified mesh: the edges where the fine mesh has features between the faces that two simplified
 /// faces stand for. Found afresh they would be too many: simplified fillets and small cylinders have sharp edges. Where
@@ -148,7 +121,7 @@ std::optional<CoarseResult> segment_simplified(const FlowInput& input, std::size
     const auto fine_faces = static_cast<double>(input.mesh.face_count());
     if (decimated.faces.empty() || static_cast<double>(decimated.faces.size()) > useful_share * fine_faces) return {};
 
-    const mesh::WorkMesh mesh = build_coarse_mesh(input.mesh, decimated, input.control);
+    const mesh::WorkMesh mesh = build_simplified_mesh(input.mesh, decimated.positions, decimated.faces, input.control);
     std::optional<mesh::FeatureEdges> features;
     if (input.features != nullptr) {
         features = transfer_features(input, decimated.face_map, mesh, options.feature_degrees);

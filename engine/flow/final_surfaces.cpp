@@ -216,7 +216,8 @@ class Finisher {
         const RegionSample sample =
             by_energy(r) ? sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), energy_refinement_points,
                                          energy_choice_points)
-                         : sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), refinement_points);
+                         : sample_region(mesh_, flow_.labels, faces(r), regions_.size(r), refinement_points,
+                                         std::numeric_limits<std::size_t>::max(), flow_.on_facets);
         describe(sample, r, result);
         const bool known = r < flow_.surfaces.size() && flow_.surfaces[r].type != SurfaceType::freeform;
         if (known) {

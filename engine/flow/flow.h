@@ -37,6 +37,8 @@ struct FlowResult {
     std::vector<std::uint8_t> faceted;
     /// Empty, or one a region: the complete fits to its faces, which the flow ended with.
     std::vector<quadric::RegionFit> fits;
+    /// Empty, or one a vertex: 1 where it lies on the facets of its surface, not on the surface (flow/divided.h).
+    std::vector<std::uint8_t> on_facets;
     double coarse_seconds = 0;  ///< spent on the simplified mesh
     double noise = 0;           ///< estimated standard deviation of the vertices, unit frame; 0: not estimated
 };

@@ -97,7 +97,8 @@ RegionSample RegionSample::thinned(std::size_t limit) const {
 }
 
 RegionSample sample_region(const mesh::WorkMesh& mesh, const partition::Labels& labels, const std::uint32_t* faces,
-                           std::size_t count, std::size_t limit, std::size_t smooth_normals) {
+                           std::size_t count, std::size_t limit, std::size_t smooth_normals,
+                           const std::vector<std::uint8_t>& left_out) {
     RegionSample sample;
     std::vector<Corner> corners;
     // About half as many vertices as faces: all corners of small regions, one corner of every so manyth face of others.
@@ -115,6 +116,7 @@ RegionSample sample_region(const mesh::WorkMesh& mesh, const partition::Labels& 
             corners.push_back({mesh.faces[f][k], f, k});
         }
     }
+    if (!left_out.empty()) std::erase_if(corners, [&](const Corner& c) { return left_out[c.vertex] != 0; });
     keep_first_of_each_vertex(corners);
     sample.points.reserve(corners.size());
     sample.normals.reserve(corners.size());

@@ -24,9 +24,11 @@ struct RegionSample {
 /// At most about `limit` vertices, evenly spread over the region (its faces follow the Morton curve). A normal is the
 /// mean of the region's faces around the vertex by their angles there, which does not depend on how facets are cut into
 /// triangles. `faces` ascending, all of one label. Of more than `smooth_normals` vertices only those that
-/// thinned(smooth_normals) takes have such a normal; that of the others is one face's.
+/// thinned(smooth_normals) takes have such a normal; that of the others is one face's. `left_out`: flags of vertices
+/// that are no evidence; empty: none.
 RegionSample sample_region(const mesh::WorkMesh& mesh, const partition::Labels& labels, const std::uint32_t* faces,
                            std::size_t count, std::size_t limit,
-                           std::size_t smooth_normals = std::numeric_limits<std::size_t>::max());
+                           std::size_t smooth_normals = std::numeric_limits<std::size_t>::max(),
+                           const std::vector<std::uint8_t>& left_out = {});
 
 }  // namespace quadseg::flow

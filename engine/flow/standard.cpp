@@ -1,6 +1,7 @@
 #include "flow/standard.h"
 
 #include "exact/exact.h"
+#include "flow/divided.h"
 #include "flow/fast.h"
 #include "flow/freeform.h"
 #include "flow/noise.h"
@@ -8,6 +9,8 @@
 #include "partition/leaves.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace quadseg::flow {
 
@@ -39,6 +42,16 @@ bool shows_exact_surfaces(const mesh::WorkMesh& mesh, const exact::ExactSurfaces
     return curved > enough * mesh.total_area;
 }
 
+/// Surfaces of divided tessellations take the place of the planes that their facets are.
+void look_beneath_divisions(const FlowInput& input, FlowResult& result) {
+    std::optional<DividedSurfaces> divided = find_divided(input, result.labels, result.surfaces);
+    if (!divided) return;
+    result.labels = std::move(divided->labels);
+    result.surfaces = std::move(divided->surfaces);
+    result.on_facets = std::move(divided->on_facets);
+    drop_empty_regions(result);
+}
+
 }  // namespace
 
 FlowResult run_standard(const FlowInput& input) {
@@ -61,10 +74,10 @@ FlowResult run_standard(const FlowInput& input) {
     result.noise = exact.noise;
     result.partial = exact.partial;
     if (result.partial) result.stop = input.control.cancelled() ? StopReason::cancelled : StopReason::deadline;
-    if (std::find(result.labels.begin(), result.labels.end(), -1) == result.labels.end()) return result;
-
     FlowResult rest;
     try {
+        if (!result.partial) look_beneath_divisions(input, result);
+        if (std::find(result.labels.begin(), result.labels.end(), -1) == result.labels.end()) return result;
         rest = group_freeform(input, result.surfaces, result.labels);
     } catch (const runtime::Stopped& stopped) {
         rest.labels.resize(result.labels.size());

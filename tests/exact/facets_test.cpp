@@ -96,5 +96,28 @@ TEST(CoordinatePrecision, RoundNumbersAreExactAndFloatsAreNot) {
     EXPECT_LT(binary, 1e-7);
 }
 
+TEST(CoordinatePrecision, FloatsReadFromATextAreAsRoundAsThat) {
+    const runtime::RunControl control(nullptr);
+    std::vector<std::uint32_t> t;
+    std::vector<double> floats, five, some;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+        if (i % 3 == 0) t.insert(t.end(), {i, i + 1, i + 2});
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const double x = std::sin(1.0 + 7 * i + 2 * k) * 3;
+            floats.push_back(static_cast<double>(static_cast<float>(x)));
+            five.push_back(static_cast<double>(static_cast<float>(std::round(x * 1e5) / 1e5)));
+            // A fifth was computed from the others.
+            some.push_back(i % 5 == 0 ? floats.back() : five.back());
+        }
+    }
+    const auto precision = [&](const std::vector<double>& x) {
+        const mesh::WorkMesh mesh = mesh::build_work_mesh({x, t, {}}, control);
+        return coordinate_precision(mesh) / mesh.frame.scale;
+    };
+    EXPECT_LT(precision(floats), 1e-7);
+    EXPECT_NEAR(precision(five), 0.29e-5, 1e-7);
+    EXPECT_NEAR(precision(some), 0.29e-5, 1e-7);
+}
+
 }  // namespace
 }  // namespace quadseg::exact
