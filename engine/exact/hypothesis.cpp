@@ -28,6 +28,8 @@ constexpr std::array types{SurfaceType::plane, SurfaceType::cylinder, SurfaceTyp
 constexpr std::size_t enough_for_torus = 16;
 constexpr double most_gap = 0.3;
 constexpr double hopeless = 1e300;
+/// In tolerances, of least squares through few points, nine tenths of which lie on the surface.
+constexpr double most_rms = 4;
 
 /// A triangle at least three times as long as high.
 bool is_long(const Scene& scene, std::uint32_t f) {
@@ -148,6 +150,20 @@ double misfit(const Scene& scene, const Surface& s, std::span<const std::uint32_
     return cost;
 }
 
+/// Robust, and of less than so many points nearly all must lie on the surface: then least squares tells, in a few
+/// steps, where there is none. Robust fits dwell there, as half of the points always lie on some torus.
+surface::SurfaceFit fit_patch(SurfaceType type, const surface::PointSet& points, const surface::FitOptions& options) {
+    const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(type));
+    const bool from_points = type == SurfaceType::plane || type == SurfaceType::sphere;
+    if (from_points || points.points.size() >= 2 * freedom + 2) return surface::fit(type, points, options);
+    surface::FitOptions least_squares = options;
+    least_squares.robust = false;
+    least_squares.wanted = least_squares.hopeless = 0;
+    least_squares.most_rms = most_rms * options.wanted;
+    const surface::SurfaceFit start = surface::fit(type, points, least_squares);
+    return start.ok ? surface::refine(start.surface, points, options) : start;
+}
+
 /// One question instead of four.
 bool may_be_curved(const Scene& scene, const PatchPoints& p, double tolerance, bool coarse,
                    const surface::FitOptions& options) {
@@ -265,7 +281,7 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
             const bool from_points = type == SurfaceType::plane || type == SurfaceType::sphere;
             if (normals == &p.face_normals && !p.jet_normals.empty() && (!coarse || from_points)) break;
             const surface::PointSet points{p.points, *normals, {}};
-            const surface::SurfaceFit fit = surface::fit(type, points, options);
+            const surface::SurfaceFit fit = fit_patch(type, points, options);
             if (!holds(scene, fit, points, tolerance)) continue;
             const double cost = misfit(scene, fit.surface, faces, tolerance);
             if (cost < hopeless && (!best || cost < best_cost)) {

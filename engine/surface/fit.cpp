@@ -149,7 +149,10 @@ SurfaceFit fit(SurfaceType type, const PointSet& p, const FitOptions& options) {
     if (!points.usable() || (points.normals.empty() && !from_points)) return failed(type);
     Attempt best;
     const double good = std::max(exact_fit, 0.1 * options.wanted / points.extent);
-    auto enough = [&] { return best.ok && best.median <= good; };
+    const bool any_rms = options.robust || !(options.most_rms > 0);
+    auto enough = [&] {
+        return best.ok && (any_rms ? best.median <= good : best.adjusted.rms * points.extent <= options.most_rms);
+    };
     auto attempt_from = [&](const Surface& start) {
         const Attempt next = attempt(start, type, points, options);
         if (better(next, best)) best = next;

@@ -23,8 +23,9 @@ struct FitOptions {
     double minimum_scale = 1e-12;  ///< of the robust scale, in the points' unit
     double hopeless = 0;           ///< give up if the median |d| is still above this, in the points' unit; 0: never …
     int hopeless_after = 5;        ///< … after so many steps
-    double wanted = 0;  ///< a fit is of use only with a median |d| up to this, in the points' unit: give up where it
-                        ///< stops falling above, take the first start that leads well below; 0: any is of use
+    double wanted = 0;    ///< a fit is of use only with a median |d| up to this, in the points' unit: give up where it
+                          ///< stops falling above, take the first start that leads well below; 0: any is of use
+    double most_rms = 0;  ///< the same of least squares (not robust): of use only with an rms up to this; 0: any is
 };
 
 struct SurfaceFit {

@@ -25,6 +25,8 @@ constexpr int idle_steps = 3;
 // Where the only question is whether the points come close: a step that promises less than this share of the cost leads
 // nowhere, unless the points are this near already (in strays), where the weights may yet tell the exact ones.
 constexpr double least_promise = 0.25, near_enough = 0.25;
+// Of least squares: the cost falls by no more than so many times what a step promises.
+constexpr double most_of_promise = 3;
 // In scales, three medians each: more than a smooth misfit spreads.
 constexpr double outlying = 1.5;
 
@@ -205,6 +207,8 @@ class Problem {
         best.close = goal && is_close(p_.distance, *goal);
         if (best.close) return best;
         const double hopeless = options.hopeless / p_.extent, wanted = options.wanted / p_.extent;
+        const double most_cost = robust_ || !(options.most_rms > 0) ? std::numeric_limits<double>::infinity()
+                                                                    : cost_of_rms(options.most_rms / p_.extent);
         double smallest = 0;
         int plateau = 0, accepted = 0, idle = 0;
         bool fresh = false;
@@ -222,6 +226,7 @@ class Problem {
             if (goal && scale > 3 * near_enough * goal->stray / p_.extent &&
                 promise(e, step) < least_promise * current && !has_outliers(p_.distance, scale))
                 break;
+            if (accepted > 0 && current - most_of_promise * promise(e, step) > most_cost) return useless(best);
             limit(step);
             const ShapeFrame next = stepped(best.frame, step);
             distances(next, p_.trial);
@@ -257,7 +262,9 @@ class Problem {
             // The scale is three times the median.
             if (robust_ && wanted > 0 && idle >= idle_steps && scale > 9 * wanted) break;
         }
+        if (current > most_cost) return useless(best);
         best.median = median_magnitude(p_.distance, p_.size(), p_.sorted);
+        if (!robust_) best.rms = std::sqrt(current / cost_of_rms(1));
         if (wanted > 0 && !(best.median <= wanted)) return best;
         double step[K], total = 0;
         if (!fresh) e = normal_equations(best.frame, scale);
@@ -268,6 +275,18 @@ class Problem {
     }
 
   private:
+    /// Of least squares.
+    double cost_of_rms(double rms) const {
+        double total = 0;
+        for (std::size_t i = 0; i < p_.size(); ++i) total += p_.weight[i];
+        return 0.5 * total * rms * rms;
+    }
+
+    static Adjustment useless(Adjustment adjustment) {
+        adjustment.median = adjustment.rms = std::numeric_limits<double>::infinity();
+        return adjustment;
+    }
+
     /// By how much the cost falls with a step if it is as the normal equations say.
     static double promise(const NormalEquations<K>& e, const double* step) {
         double slope = 0;

@@ -16,13 +16,14 @@ struct Closeness {
 struct Adjustment {
     ShapeFrame frame;
     double median = 0;        ///< of |distance|, in the local points' unit
+    double rms = 0;           ///< of least squares, likewise
     bool determined = false;  ///< the points fix all parameters of the type
     bool finite = false;
     bool close = false;  ///< came as close as asked, and stopped there
 };
 
-/// Minimises the (robust) sum of squared distances from `start`. options.hopeless and minimum_scale are in the points'
-/// own unit.
+/// Minimises the (robust) sum of squared distances from `start`. options.hopeless, minimum_scale, wanted and most_rms
+/// are in the points' own unit.
 Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions& options);
 
 /// Only asks whether it comes so close: ends as soon as it does, or falls too slowly to get there.
