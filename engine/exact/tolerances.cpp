@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace quadseg::exact {
@@ -21,10 +22,10 @@ constexpr double worst_precision = 2e-6;
 class PowersOfTen {
   public:
     PowersOfTen() {
-        for (int e = -largest; e <= largest; ++e) known_[static_cast<std::size_t>(e + largest)] = std::pow(10.0, e);
+        for (std::size_t k = 0; k < known_.size(); ++k) known_[k] = std::pow(10.0, static_cast<int>(k) - largest);
     }
     double operator()(int exponent) const {
-        return std::abs(exponent) <= largest ? known_[static_cast<std::size_t>(exponent + largest)]
+        return std::abs(exponent) <= largest ? known_[static_cast<std::size_t>(std::ptrdiff_t{exponent} + largest)]
                                              : std::pow(10.0, exponent);
     }
 

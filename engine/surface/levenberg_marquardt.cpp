@@ -26,7 +26,7 @@ constexpr int idle_steps = 3;
 // nowhere, unless the points are this near already (in strays), where the weights may yet tell the exact ones.
 constexpr double least_promise = 0.25, near_enough = 0.25;
 // Of least squares: the cost falls by no more than so many times what a step promises.
-constexpr double most_of_promise = 3;
+constexpr double most_of_promise = 1.5;
 // In scales, three medians each: more than a smooth misfit spreads.
 constexpr double outlying = 1.5;
 

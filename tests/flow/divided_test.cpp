@@ -26,7 +26,8 @@ Mesh subdivided(const Mesh& mesh, std::vector<std::int32_t>& truth) {
         const auto [at, fresh] =
             middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(fine.positions.size() / 3));
         for (std::size_t k = 0; fresh && k < 3; ++k)
-            fine.positions.push_back((mesh.positions[3 * a + k] + mesh.positions[3 * b + k]) / 2);
+            fine.positions.push_back((mesh.positions[std::size_t{3} * a + k] + mesh.positions[std::size_t{3} * b + k]) /
+                                     2);
         return at->second;
     };
     std::vector<std::int32_t> labels;

@@ -130,6 +130,25 @@ TEST(Fit, NoiseGivesTheLikelySurface) {
     }
 }
 
+TEST(Fit, LeastSquaresAreRefusedAboveTheRmsThatIsOfUse) {
+    for (const Case& c : exact_cases()) {
+        // Planes have one solution, which takes no steps.
+        if (c.u.count * c.v.count < 40 || c.surface.type == SurfaceType::plane) continue;
+        Patch patch = grid(c.surface, c.u, c.v, c.bend);
+        add_noise(patch, 1e-5);
+        FitOptions options;
+        options.robust = false;
+        const SurfaceFit any = fit_of(c.surface, patch, options);
+        ASSERT_TRUE(any.ok) << c.name;
+        options.most_rms = any.rms * 1.1;
+        const SurfaceFit of_use = fit_of(c.surface, patch, options);
+        ASSERT_TRUE(of_use.ok) << c.name;
+        EXPECT_NEAR(of_use.rms, any.rms, any.rms * 1e-3) << c.name;
+        options.most_rms = any.rms * 0.9;
+        EXPECT_FALSE(fit_of(c.surface, patch, options).ok) << c.name;
+    }
+}
+
 TEST(Fit, LargeRadiusUpToTheLimit) {
     for (double radius : {1e2, 1e3}) {
         const Surface s = sphere({0, 0, -radius}, radius);
