@@ -40,6 +40,11 @@ constexpr double noise_margin = 1.5;
 constexpr double exact_tolerance = 2e-7;
 /// By how much vertices on the trim curves of a CAD file may be off, unit frame.
 constexpr double trim_error = 2e-5;
+/// The RMS distance of a free-form patch from the surface that names it, in those from its plane: what bends it is that
+/// surface; and in the unit frame.
+constexpr double nearly_all_bend = 0.01, nearly_exact_distance = 1e-4;
+/// And of a plane, in RMS radii of the patch.
+constexpr double nearly_flat = 1e-3;
 /// Degrees by which the normals of a surface that explains a free-form patch may differ from the mesh's (RMS).
 constexpr double free_form_angle = 12;
 /// And the RMS distance from it, in RMS radii of the patch, where none is exact.
@@ -359,7 +364,8 @@ class Finisher {
         const bool plane = fit.ok && fit.surface.type == SurfaceType::plane;
         if (judged && (!fit.ok || !(fit.rms <= 2 * tolerance) ||
                        (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few))))) {
-            const SurfaceFit trimmed = free_form ? mostly_exact(few, tolerance) : SurfaceFit{};
+            SurfaceFit trimmed = free_form ? mostly_exact(few, tolerance) : SurfaceFit{};
+            if (free_form && !trimmed.ok) trimmed = nearly_exact(few, result.extent);
             if (trimmed.ok) {
                 refine_choice(trimmed.surface, sample, own, {}, result);
                 (void)quadric_of(result.surface, result.centroid, result.quadric);
@@ -401,6 +407,38 @@ class Finisher {
             if (!fit.ok || !(fit.median <= tolerance) || !(fit.q97 <= 2 * trim_error)) continue;
             if (wrong_normals(fit.surface, few)) continue;
             const double score = (normal_deviation(fit.surface, few.all()) + 1e-7) * preference(type);
+            if (best.ok && !(score < best_score)) continue;
+            best = fit;
+            best_score = score;
+        }
+        return best;
+    }
+
+    /// A typed surface that accounts for nearly all of the patch's bend, no farther off than what CAD kernels sew
+    /// together: an engineer's name for what no vertex verifies.
+    SurfaceFit nearly_exact(const RegionSample& few, double extent) const {
+        const PointSet p = few.all();
+        const SurfaceFit plane = surface::fit(SurfaceType::plane, p);
+        if (!plane.ok) return {};
+        if (plane.q97 <= 2 * trim_error && plane.rms <= nearly_flat * extent) return plane;
+        const double most = std::min(nearly_exact_distance, nearly_all_bend * plane.rms);
+        std::vector<SurfaceFit> near;
+        double least = most;
+        for (const SurfaceType type :
+             {SurfaceType::cylinder, SurfaceType::cone, SurfaceType::sphere, SurfaceType::torus}) {
+            if (p.points.size() < 2 * static_cast<std::size_t>(surface::degrees_of_freedom(type)) + 2) continue;
+            surface::FitOptions options;
+            options.hopeless = 2 * most;
+            const SurfaceFit fit = surface::fit(type, p, options);
+            if (!fit.ok || !(fit.rms <= most) || wrong_normals(fit.surface, few)) continue;
+            near.push_back(fit);
+            least = std::min(least, fit.rms);
+        }
+        SurfaceFit best;
+        double best_score = 0;
+        for (const SurfaceFit& fit : near) {
+            if (!(fit.rms <= std::max(trim_error, equal_ratio * least))) continue;
+            const double score = (normal_deviation(fit.surface, p) + 1e-7) * preference(fit.surface.type);
             if (best.ok && !(score < best_score)) continue;
             best = fit;
             best_score = score;
