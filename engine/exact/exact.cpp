@@ -128,6 +128,7 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     extend_to_borders(scene, step, state);
     absorb_scraps(scene, state);
     unite_equal(scene, step, state);
+    release_crumbs(scene, selection.noise, state);
 
     ExactSurfaces result;
     result.labels = std::move(state.region);

@@ -20,11 +20,20 @@ constexpr double mostly = 0.5;
 constexpr std::size_t least_strips = 6;
 /// Amid free faces a surface needs as many facets as this to be believed.
 constexpr std::size_t believable_facets = 12;
+/// In the end, when all searches are over: a good part of the border, and fewer facets than this. Planes go on over
+/// gentler folds.
+constexpr double good_part = 0.4, smooth_most = 10 * std::numbers::pi / 180;
+constexpr std::size_t believable_in_the_end = 32;
+/// Through so many vertices a plane is no accident where it is exact, and none at all where it is not and goes on
+/// smoothly along this part of the border: free-form faces have flat places.
+constexpr std::size_t telling_vertices = 5;
+constexpr double some_part = 0.2;
 
 struct RegionBorder {
     double perimeter = 0;
     double to_strips = 0;  ///< gentle fold to a planar region
     double to_free = 0;    ///< smooth or gentle to a free face
+    double smoothly_to_free = 0;
     std::size_t facets = 0;
     double area = 0;
 };
@@ -64,6 +73,7 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
             const std::int32_t other = state.region[static_cast<std::size_t>(g)];
             if (other < 0) {
                 border.to_free += length;
+                if (fold <= smooth_most) border.smoothly_to_free += length;
             } else if (fold > gentle_least &&
                        state.surface[static_cast<std::size_t>(other)].type == SurfaceType::plane) {
                 border.to_strips += length;
@@ -138,6 +148,65 @@ std::optional<Surface> cylinder_through(const Scene& scene, std::span<const std:
     return fit.surface;
 }
 
+enum class PlaneEvidence : std::uint8_t { unquestioned, few_vertices, inexact };
+
+/// Of planes that go on smoothly into free faces along some part of their border.
+std::vector<PlaneEvidence> judge_planes(const Scene& scene, double noise, const std::vector<RegionBorder>& borders,
+                                        const Explained& state) {
+    std::vector<std::vector<std::uint32_t>> faces(borders.size());
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        if (state.region[f] < 0) continue;
+        const auto r = static_cast<std::size_t>(state.region[f]);
+        if (state.surface[r].type == SurfaceType::plane &&
+            borders[r].smoothly_to_free >= some_part * borders[r].perimeter) {
+            faces[r].push_back(static_cast<std::uint32_t>(f));
+        }
+    }
+    const double exact = std::max({10 * noise, 3 * scene.tolerances.precision, 1e-10 * scene.tolerances.diagonal});
+    std::vector<PlaneEvidence> evidence(borders.size(), PlaneEvidence::unquestioned);
+    Marks marks;
+    marks.prepare(scene.mesh.face_count(), scene.mesh.vertex_count());
+    for (std::size_t r = 0; r < faces.size(); ++r) {
+        if (faces[r].empty()) continue;
+        scene.control.check();
+        const PatchPoints p = patch_points(scene, faces[r], marks);
+        if (p.points.size() < telling_vertices) {
+            evidence[r] = PlaneEvidence::few_vertices;
+            continue;
+        }
+        const surface::SurfaceFit fit = surface::fit(SurfaceType::plane, {p.points, {}, {}});
+        if (!fit.ok || !(fit.median <= exact)) evidence[r] = PlaneEvidence::inexact;
+    }
+    return evidence;
+}
+
+/// A triangle that is all of its plane is evidence of none where the mesh goes on gently, over a free face or another
+/// such triangle.
+void release_lone_triangles(const Scene& scene, Explained& state) {
+    std::vector<std::uint32_t> faces(state.surface.size(), 0);
+    for (const std::int32_t r : state.region) {
+        if (r >= 0) ++faces[static_cast<std::size_t>(r)];
+    }
+    const auto is_lone = [&](std::int32_t r) {
+        return r >= 0 && faces[static_cast<std::size_t>(r)] == 1 &&
+               state.surface[static_cast<std::size_t>(r)].type == SurfaceType::plane;
+    };
+    std::vector<std::uint32_t> released;
+    std::size_t polls = 0;
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        scene.control.check_often(polls);
+        if (!is_lone(state.region[f])) continue;
+        const auto goes_on = [&](std::int32_t g) {
+            if (g < 0) return false;
+            const std::int32_t other = state.region[static_cast<std::size_t>(g)];
+            return (other < 0 || is_lone(other)) && dihedral(scene.mesh, f, static_cast<std::size_t>(g)) <= gentle_most;
+        };
+        const auto& neighbors = scene.mesh.neighbors[f];
+        if (std::any_of(neighbors.begin(), neighbors.end(), goes_on)) released.push_back(static_cast<std::uint32_t>(f));
+    }
+    for (const std::uint32_t f : released) state.region[f] = -1;
+}
+
 }  // namespace
 
 void release_extruded(const Scene& scene, Explained& state) {
@@ -186,6 +255,26 @@ void release_doubtful(const Scene& scene, Explained& state) {
         if (r >= 0 && doubtful[static_cast<std::size_t>(r)] != 0) r = -1;
     }
     separate_parts(scene, state);
+}
+
+void release_crumbs(const Scene& scene, double noise, Explained& state) {
+    const std::vector<RegionBorder> borders = measure_borders(scene, state);
+    const std::vector<PlaneEvidence> evidence = judge_planes(scene, noise, borders, state);
+    for (std::int32_t& r : state.region) {
+        if (r < 0) continue;
+        const auto region = static_cast<std::size_t>(r);
+        const RegionBorder& b = borders[region];
+        bool crumb = false;
+        if (state.surface[region].type != SurfaceType::plane) {
+            crumb = b.to_free >= good_part * b.perimeter && b.facets < believable_in_the_end;
+        } else if (evidence[region] == PlaneEvidence::few_vertices) {
+            crumb = b.smoothly_to_free >= good_part * b.perimeter;
+        } else {
+            crumb = evidence[region] == PlaneEvidence::inexact;
+        }
+        if (crumb) r = -1;
+    }
+    release_lone_triangles(scene, state);
 }
 
 }  // namespace quadseg::exact

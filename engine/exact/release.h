@@ -15,4 +15,10 @@ void release_extruded(const Scene& scene, Explained& state);
 /// faces.
 void release_doubtful(const Scene& scene, Explained& state);
 
+/// When all searches are over, what free-form faces show by chance becomes free: curved surfaces of few facets that go
+/// on gently into free faces along a good part of their border; planes that do so smoothly and through whose vertices
+/// no exact plane goes (noise: of the vertices that exact surfaces explain, unit frame); planes of one triangle beside
+/// free faces or each other.
+void release_crumbs(const Scene& scene, double noise, Explained& state);
+
 }  // namespace quadseg::exact

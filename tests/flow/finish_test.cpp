@@ -250,6 +250,35 @@ TEST(Finish, SmoothBumpsAreFreeForm) {
     expect_consistent(bumps.view(), result);
 }
 
+TEST(Finish, WhatIsNearlyACylinderIsNamedOne) {
+    // Off by more than any verified surface, by less than an engineer cares.
+    constexpr std::uint32_t around = 48, rings = 16;
+    test::Shape s;
+    for (std::uint32_t j = 0; j <= rings; ++j) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const double angle = 2 * pi * i / around, z = 3.0 * j / rings;
+            const double radius = 2 + 3e-4 * std::sin(3 * angle) * std::cos(4 * z);
+            s.vertex(radius * std::cos(angle), radius * std::sin(angle), z);
+        }
+    }
+    for (std::uint32_t j = 0; j < rings; ++j) {
+        for (std::uint32_t i = 0; i < around; ++i) {
+            const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around;
+            s.quad(a, b, b + around, a + around);
+        }
+    }
+    for (std::uint32_t i = 1; i + 1 < around; ++i) {
+        s.face(0, i + 1, i);
+        s.face(rings * around, rings * around + i, rings * around + i + 1);
+    }
+    const Segmentation result = segment(s.view());
+    const Region* side = largest_of(result, SurfaceType::cylinder);
+    ASSERT_NE(side, nullptr);
+    EXPECT_NEAR(side->surface.radius, 2, 3e-4);
+    EXPECT_GT(side->area, 0.99 * 2 * pi * 2 * 3);
+    EXPECT_GT(side->rms, 1e-5);
+}
+
 TEST(Finish, TrianglesOfAPolygonShareTheLabelOfItsLargerPart) {
     test::Shape grid = test::grid(6, 6);
     for (std::uint32_t f = 0; f < grid.faces(); ++f) grid.polygons.push_back(f / 2);

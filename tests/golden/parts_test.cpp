@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Generated, Parts,
                                          Part{"quadrics", 8000, 0.998, 13, 0.998, 2e-4}, Part{"plate", 20000},
                                          Part{"shaft", 20000}, Part{"flange", 20000}, Part{"fillets", 20000},
                                          Part{"rounded_octahedron", 20000},
-                                         Part{"quadrics", 20000, 0.998, 22, 0.998, 2.3e-3}));
+                                         Part{"quadrics", 20000, 0.998, 12, 0.998, 2.6e-3}));
 
 }  // namespace
 }  // namespace quadseg::test
