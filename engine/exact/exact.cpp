@@ -101,10 +101,13 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     mark_covered(selection.owner, covered);
     // Rounded coordinates make the first pass loose already: a second one would lay tori through free-form faces.
     if (scene.tolerances.loose_fit > clearly_looser * scene.tolerances.fit) {
-        append(candidates, search_surfaces(scene, {.loose = true}, covered));
+        std::vector<Candidate> loose = search_surfaces(scene, {.loose = true}, covered);
+        scene.control.check();
+        if (!loose.empty()) {
+            append(candidates, std::move(loose));
+            selection = select(scene, candidates, step);
+        }
     }
-    scene.control.check();
-    selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);
     std::vector<Candidate> quadrics = search_surfaces(scene, {.quadrics = true}, covered);
     scene.control.check();
@@ -121,13 +124,14 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     add_planes(scene, step, state);
     extend_to_borders(scene, step, state);
     unite_equal(scene, step, state);
+    const std::vector<std::int32_t> united = state.region;
     release_doubtful(scene, state);
     search_coarse_pieces(scene, state);
     join_free_pieces(scene, state);
     absorb_exact_crumbs(scene, state);
     extend_to_borders(scene, step, state);
     absorb_scraps(scene, state);
-    unite_equal(scene, step, state);
+    if (state.region != united) unite_equal(scene, step, state);
     release_crumbs(scene, selection.noise, state);
 
     ExactSurfaces result;

@@ -2,9 +2,15 @@
 
 #include "mesh/connected.h"
 
+#include <algorithm>
+
 namespace quadseg::exact {
 
 void separate_parts(const Scene& scene, Explained& state) {
+    if (state.region == state.separate) {
+        state.surface.resize(state.separate_count);
+        return;
+    }
     std::vector<std::int32_t> part;
     const std::vector<std::int32_t>& old = state.region;
     const std::size_t count = mesh::connected_faces(
@@ -18,11 +24,14 @@ void separate_parts(const Scene& scene, Explained& state) {
             surfaces.push_back(state.surface[static_cast<std::size_t>(old[f])]);
     }
     state.region = std::move(part);
+    state.separate = state.region;
+    state.separate_count = count;
     state.surface = std::move(surfaces);
 }
 
 std::vector<std::vector<std::uint32_t>> free_components(const Scene& scene, const Explained& state,
                                                         bool within_creases) {
+    if (std::find(state.region.begin(), state.region.end(), -1) == state.region.end()) return {};
     std::vector<std::int32_t> part;
     const std::size_t count = mesh::connected_faces(
         scene.mesh, [&](std::size_t f) { return state.region[f] < 0; },

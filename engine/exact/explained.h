@@ -13,6 +13,9 @@ namespace quadseg::exact {
 struct Explained {
     std::vector<std::int32_t> region;  ///< of a face; −1: free
     std::vector<Surface> surface;      ///< of a region
+    /// The regions as separate_parts() left them: where nothing has changed since, there is nothing to separate.
+    std::vector<std::int32_t> separate;
+    std::size_t separate_count = 0;
 
     std::int32_t add(const Surface& s) {
         surface.push_back(s);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
 namespace quadseg::exact {
 
@@ -21,49 +22,78 @@ class FaceFitter {
           evaluate_(surface),
           trim_(scene.tolerances.trim),
           largest_turn_(largest_turn),
-          apex_(to_vec3(surface.point)),
-          cone_(surface.type == SurfaceType::cone) {}
+          point_(to_vec3(surface.point)),
+          plane_normal_(normalized(3.0 * to_vec3(surface.axis))),
+          squared_least_turn_(largest_turn > 2 * least_allowed ? least_allowed * least_allowed : -1) {}
 
     double distance(std::size_t f) const {
-        double d = 0;
-        for (int k = 0; k < 3; ++k) d = std::max(d, std::abs(evaluate_.distance(scene_.mesh.corner(f, k))));
-        return d;
+        return evaluate_.visit([&](const auto& e) { return distance(e, f); });
     }
 
     FaceFit operator()(std::size_t f) const {
-        FaceFit fit;
-        fit.distance = distance(f);
-        normal_part(f, fit);
-        return fit;
+        return evaluate_.visit([&](const auto& e) {
+            FaceFit fit;
+            fit.distance = distance(e, f);
+            normal_part(f, normals_at(e, f), fit);
+            return fit;
+        });
     }
 
-    /// operator()(f).within(tolerance), at once when the distance decides.
+    /// operator()(f).within(tolerance), at once when the distance or a normal that is allowed everywhere decides.
     bool accepts(std::size_t f, double tolerance) const {
-        FaceFit fit;
-        fit.distance = distance(f);
-        if (!(fit.distance <= tolerance)) return false;
-        normal_part(f, fit);
-        return fit.angle <= fit.allowed;
+        return evaluate_.visit([&](const auto& e) {
+            FaceFit fit;
+            fit.distance = distance(e, f);
+            if (!(fit.distance <= tolerance)) return false;
+            const Normals normals = normals_at(e, f);
+            if (normals.squared_step <= squared_least_turn_ &&
+                squared_norm(normals.mean - scene_.mesh.normals[f]) <= least_allowed * least_allowed) {
+                return true;
+            }
+            normal_part(f, normals, fit);
+            return fit.angle <= fit.allowed;
+        });
     }
 
     double vertex_distance(std::uint32_t v) const { return std::abs(evaluate_.distance(scene_.mesh.positions[v])); }
 
   private:
+    /// Of the surface at the vertices of a face.
+    struct Normals {
+        Vec3 mean;
+        double squared_step = 0;  ///< largest squared difference of two
+    };
+
+    /// Chord of the angle that a face of any size is allowed: a little less than 3 degrees.
+    static constexpr double least_allowed = 0.052;
+
     static double angle_of_chord(double chord) { return 2 * std::asin(std::min(1.0, chord / 2)); }
 
-    void normal_part(std::size_t f, FaceFit& fit) const {
-        Vec3 a = evaluate_.normal(scene_.mesh.corner(f, 0));
-        Vec3 b = evaluate_.normal(scene_.mesh.corner(f, 1));
-        Vec3 c = evaluate_.normal(scene_.mesh.corner(f, 2));
-        if (cone_) {
+    double distance(const auto& evaluator, std::size_t f) const {
+        double d = 0;
+        for (int k = 0; k < 3; ++k) d = std::max(d, std::abs(evaluator.distance(scene_.mesh.corner(f, k))));
+        return d;
+    }
+
+    template <class Evaluator>
+    Normals normals_at(const Evaluator& evaluator, std::size_t f) const {
+        if constexpr (std::is_same_v<Evaluator, surface::PlaneEvaluator>) return {plane_normal_, 0};
+        Vec3 a = evaluator.normal(scene_.mesh.corner(f, 0));
+        Vec3 b = evaluator.normal(scene_.mesh.corner(f, 1));
+        Vec3 c = evaluator.normal(scene_.mesh.corner(f, 2));
+        if constexpr (std::is_same_v<Evaluator, surface::ConeEvaluator>) {
             // The apex has no normal: a facet that ends there turns by what its other side turns.
             const double near =
                 1e-3 * 2 * scene_.mesh.areas[f] / std::max(static_cast<double>(scene_.heights[f]), 1e-300);
-            if (norm(scene_.mesh.corner(f, 0) - apex_) <= near) a = normalized(b + c);
-            if (norm(scene_.mesh.corner(f, 1) - apex_) <= near) b = normalized(c + a);
-            if (norm(scene_.mesh.corner(f, 2) - apex_) <= near) c = normalized(a + b);
+            if (norm(scene_.mesh.corner(f, 0) - point_) <= near) a = normalized(b + c);
+            if (norm(scene_.mesh.corner(f, 1) - point_) <= near) b = normalized(c + a);
+            if (norm(scene_.mesh.corner(f, 2) - point_) <= near) c = normalized(a + b);
         }
-        fit.step = angle_of_chord(std::sqrt(std::max({squared_norm(a - b), squared_norm(b - c), squared_norm(c - a)})));
+        return {normalized(a + b + c), std::max({squared_norm(a - b), squared_norm(b - c), squared_norm(c - a)})};
+    }
+
+    void normal_part(std::size_t f, const Normals& normals, FaceFit& fit) const {
+        fit.step = angle_of_chord(std::sqrt(normals.squared_step));
         constexpr double degree = std::numbers::pi / 180;
         // A flat face on a curved surface differs from the surface's normal by what that turns across the face.
         if (fit.step > largest_turn_) {
@@ -77,14 +107,14 @@ class FaceFitter {
             fit.allowed = std::numeric_limits<double>::infinity();
             return;
         }
-        fit.angle = angle_of_chord(norm(normalized(a + b + c) - scene_.mesh.normals[f]));
+        fit.angle = angle_of_chord(norm(normals.mean - scene_.mesh.normals[f]));
     }
 
     const Scene& scene_;
     surface::SurfaceEvaluator evaluate_;
     double trim_, largest_turn_;
-    Vec3 apex_;
-    bool cone_;
+    Vec3 point_, plane_normal_;
+    double squared_least_turn_;
 };
 
 }  // namespace quadseg::exact

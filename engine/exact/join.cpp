@@ -88,6 +88,7 @@ void search_coarse_pieces(const Scene& scene, Explained& state) {
 
 void join_free_pieces(const Scene& scene, Explained& state) {
     const std::vector<std::vector<std::uint32_t>> pieces = free_components(scene, state, true);
+    if (pieces.empty()) return;
     std::vector<std::int32_t> piece_of(scene.mesh.face_count(), -1);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (pieces[i].size() > largest_piece) continue;

@@ -258,6 +258,10 @@ void release_doubtful(const Scene& scene, Explained& state) {
 }
 
 void release_crumbs(const Scene& scene, double noise, Explained& state) {
+    if (std::find(state.region.begin(), state.region.end(), -1) == state.region.end()) {
+        release_lone_triangles(scene, state);
+        return;
+    }
     const std::vector<RegionBorder> borders = measure_borders(scene, state);
     const std::vector<PlaneEvidence> evidence = judge_planes(scene, noise, borders, state);
     for (std::int32_t& r : state.region) {

@@ -24,6 +24,11 @@ std::size_t quiet_zone(std::size_t failures) {
 
 constexpr std::size_t most_seeds_at_once = 8;
 
+/// After so many failures in a row, and twice as many each time, a chart is asked whether it is one quadric: that ends
+/// the search at once, and the others of a free-form chart cost hundreds of times as much.
+constexpr std::size_t failures_before_quadric = 16;
+constexpr double whole_chart = 0.9;
+
 /// One smooth chart: seeds farthest from creases first.
 class ChartSearch {
   public:
@@ -69,6 +74,10 @@ class ChartSearch {
                     }
                 }
             }
+            if (failures_ >= failures_before_quadric_ && !options_.quadrics) {
+                failures_before_quadric_ *= 2;
+                if (is_one_quadric(seeds.front())) break;
+            }
             at_once_ = any ? std::max<std::size_t>(1, at_once_ / 2) : std::min(most_seeds_at_once, at_once_ * 2);
         }
         if (!options_.quadrics) retry_regular_rows();
@@ -80,6 +89,15 @@ class ChartSearch {
     std::vector<Candidate> take() { return std::move(candidates_); }
 
   private:
+    bool is_one_quadric(std::uint32_t seed) {
+        const auto in_chart = [&](std::uint32_t f) { return scene_.chart[f] == chart_; };
+        std::optional<Candidate> quadric = find_quadric(scene_, seed, in_chart, marks_.local());
+        if (!quadric) return false;
+        const auto inside = std::count_if(quadric->faces.begin(), quadric->faces.end(), in_chart);
+        return static_cast<double>(inside) >= whole_chart * static_cast<double>(faces_.size()) &&
+               commit(std::move(*quadric));
+    }
+
     std::vector<std::uint32_t> take_seeds(std::size_t& next) {
         std::vector<std::uint32_t> seeds;
         for (; next < faces_.size() && seeds.size() < at_once_; ++next) {
@@ -160,7 +178,7 @@ class ChartSearch {
     runtime::PerThread<Marks>& marks_;
     std::int32_t chart_;
     std::vector<Candidate> candidates_;
-    std::size_t failures_ = 0, at_once_ = 1;
+    std::size_t failures_ = 0, failures_before_quadric_ = failures_before_quadric, at_once_ = 1;
 };
 
 }  // namespace

@@ -91,19 +91,32 @@ class Selector {
         }
     }
 
+    /// Where a candidate has no rival, any claim that is allowed will do.
     void score_claims() {
+        std::vector<std::uint8_t> rivals(scene_.mesh.face_count(), 0);
+        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+            if (!is_alive(c)) continue;
+            for (const std::uint32_t f : candidates_[c].faces) {
+                rivals[f] = static_cast<std::uint8_t>(std::min(2, rivals[f] + 1));
+            }
+        }
         claims_.assign(candidates_.size(), {});
         runtime::parallel_for(candidates_.size(), 1, [&](std::size_t c) {
             if (!is_alive(c)) return;
             const Candidate& candidate = candidates_[c];
             const FaceFitter fitter(scene_, candidate.surface);
+            const bool plane = candidate.surface.type == SurfaceType::plane;
             const double allowed_step = 1.7 * std::max(largest_step_, candidate.step);
             claims_[c].reserve(candidate.faces.size());
             std::size_t polls = 0;
             for (const std::uint32_t f : candidate.faces) {
                 scene_.control.check_often(polls);
+                if (plane && rivals[f] == 1) {
+                    claims_[c].push_back(0);
+                    continue;
+                }
                 const FaceFit fit = fitter(f);
-                const bool flat_cut = candidate.surface.type != SurfaceType::plane && fit.step > allowed_step;
+                const bool flat_cut = !plane && fit.step > allowed_step;
                 // Logarithmic: errors of trim curves must not outvote the normal.
                 const double angle = std::isinf(fit.allowed) ? 0 : 2 * fit.angle / fit.allowed;
                 const double unit = std::max(2e-7 * scene_.tolerances.diagonal, 4 * scene_.tolerances.precision);

@@ -112,19 +112,19 @@ class Uniter {
         const FaceFitter fitter(scene_, s);
         const std::vector<std::uint32_t>& list = faces(region);
         const std::size_t stride = std::max<std::size_t>(1, list.size() / sample);
-        std::size_t vertices = 0, on = 0, tested = 0, turned = 0, steep = 0;
+        const std::size_t tests = (list.size() + stride - 1) / stride;
+        std::size_t off = 0, turned = 0, steep = 0;
+        // Most pairs of neighbours are decided by the first few faces.
         for (std::size_t i = 0; i < list.size(); i += stride) {
-            for (const std::uint32_t v : scene_.mesh.faces[list[i]]) {
-                ++vertices;
-                if (fitter.vertex_distance(v) <= tolerance) ++on;
-            }
+            for (const std::uint32_t v : scene_.mesh.faces[list[i]])
+                off += fitter.vertex_distance(v) <= tolerance ? 0 : 1;
+            if (static_cast<double>(3 * tests - off) < share * static_cast<double>(3 * tests)) return false;
             const FaceFit fit = fitter(list[i]);
-            ++tested;
-            if (fit.angle > fit.allowed) ++turned;
-            if (s.type != SurfaceType::plane && fit.step > 1.7 * largest_step_) ++steep;
+            turned += fit.angle > fit.allowed ? 1 : 0;
+            steep += s.type != SurfaceType::plane && fit.step > 1.7 * largest_step_ ? 1 : 0;
+            if (10 * turned > tests || 10 * steep > tests) return false;
         }
-        return static_cast<double>(on) >= share * static_cast<double>(vertices) && 10 * turned <= tested &&
-               10 * steep <= tested;
+        return true;
     }
 
     void join(std::int32_t a, std::int32_t b, const Surface& s) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace quadseg::surface {
 
@@ -102,11 +103,12 @@ class Problem {
 
     NormalEquations<K> normal_equations(const ShapeFrame& f, double scale) const {
         constexpr int pairs = K * (K + 1) / 2 + K;
-        alignas(64) double sums[pairs][lane_count] = {};
-        alignas(64) double column[K][lane_count], weighted[K][lane_count], d[lane_count], w[lane_count];
+        alignas(64) double sums[pairs][lane_count];
         const ShapeDistance<type> shape(f);
         const double inverse = robust_ ? 1 / (scale * scale) : 0;
-        for (std::size_t first = 0; first < p_.padded(); first += lane_count) {
+        // The first points set the sums: for a few, zeroes would cost as much as they do.
+        const auto add = [&](std::size_t first, auto is_first) {
+            alignas(64) double column[K][lane_count], weighted[K][lane_count], d[lane_count], w[lane_count];
             for (std::size_t l = 0; l < lane_count; ++l) {
                 const double x = p_.x[first + l] - f.p.x, y = p_.y[first + l] - f.p.y, z = p_.z[first + l] - f.p.z;
                 d[l] = shape.derivatives(f.n.x * x + f.n.y * y + f.n.z * z, f.g.x * x + f.g.y * y + f.g.z * z,
@@ -115,14 +117,24 @@ class Problem {
                 w[l] = p_.weight[first + l] / (1 + d[l] * d[l] * inverse);
             }
             int pair = 0;
+            const auto sum_up = [&](const double* a, const double* b) {
+                double* const sum = sums[pair++];
+                for (std::size_t l = 0; l < lane_count; ++l) {
+                    if constexpr (is_first.value) {
+                        sum[l] = a[l] * b[l];
+                    } else {
+                        sum[l] += a[l] * b[l];
+                    }
+                }
+            };
             for (int i = 0; i < K; ++i) {
                 for (std::size_t l = 0; l < lane_count; ++l) weighted[i][l] = w[l] * column[i][l];
-                for (int j = 0; j <= i; ++j, ++pair)
-                    for (std::size_t l = 0; l < lane_count; ++l) sums[pair][l] += weighted[i][l] * column[j][l];
-                for (std::size_t l = 0; l < lane_count; ++l) sums[pair][l] += weighted[i][l] * d[l];
-                ++pair;
+                for (int j = 0; j <= i; ++j) sum_up(weighted[i], column[j]);
+                sum_up(weighted[i], d);
             }
-        }
+        };
+        add(0, std::true_type{});
+        for (std::size_t first = lane_count; first < p_.padded(); first += lane_count) add(first, std::false_type{});
         NormalEquations<K> e;
         int pair = 0;
         auto total = [&] {
