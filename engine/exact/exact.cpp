@@ -150,11 +150,14 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
 }  // namespace
 
 ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
-    const Scene scene = build_scene(mesh, control);
+    Scene scene = build_scene(mesh, control);
     std::vector<Candidate> candidates;
     Selection selection;
     try {
-        return search_and_settle(scene, candidates, selection);
+        ExactSurfaces result = search_and_settle(scene, candidates, selection);
+        result.tolerances = scene.tolerances;
+        result.facets = std::move(scene.facets);
+        return result;
     } catch (const runtime::Stopped&) {
         if (candidates.empty()) throw;
         return found_so_far(mesh, candidates, std::move(selection.owner));

@@ -4,6 +4,8 @@
 
 #include <quadseg/segmentation.h>
 
+#include "exact/facets.h"
+#include "exact/tolerances.h"
 #include "mesh/work_mesh.h"
 #include "partition/regions.h"
 
@@ -18,6 +20,8 @@ struct ExactSurfaces {
     double noise = 0;               ///< median distance of vertices to their surfaces, unit frame
     double largest_step = 0;        ///< radians; see Selection
     bool partial = false;           ///< stopped: the surfaces found so far; free-form parts are labelled too
+    Tolerances tolerances;
+    Facets facets;  ///< of the mesh; partial: none
 };
 
 /// Throws Stopped while there is no surface yet.

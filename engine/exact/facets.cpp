@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t block = 16384;  ///< faces of a task
 constexpr std::size_t facet_grain = 256;
+/// Of vertices, unit frame, as the normals see it.
+constexpr double rounding = 1e-13;
 
 /// Faces by falling height, to a factor of 2, then by index: slivers, whose normals say little, come last.
 std::vector<std::uint32_t> order_by_height(const std::vector<float>& heights) {
@@ -216,12 +218,16 @@ class FacetFinder {
     }
 
     bool coplanar(std::uint32_t f, const Facet& facet) const {
+        // No vertex has to be looked at where the normal is off by more than the height of the face allows.
+        const double height = static_cast<double>(heights_[f]);
+        const double most_tilt = (2.1 * tolerances_.facet + rounding) / height;
+        if (squared_norm(cross(facet.normal, mesh_.normals[f])) > most_tilt * most_tilt) return false;
         for (int k = 0; k < 3; ++k) {
             if (!(std::abs(dot(facet.normal, mesh_.corner(f, k)) - facet.offset) <= tolerances_.facet)) return false;
         }
         // The vertices bound the tilt of a face that is high enough; what remains to be seen is whether it is folded
         // over.
-        return static_cast<double>(heights_[f]) < 4 * tolerances_.facet || dot(facet.normal, mesh_.normals[f]) > 0;
+        return height < 4 * tolerances_.facet || dot(facet.normal, mesh_.normals[f]) > 0;
     }
 
     bool has_interior_vertex(std::span<const std::uint32_t> members) const {

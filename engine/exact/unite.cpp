@@ -2,6 +2,7 @@
 
 #include "exact/face_fit.h"
 #include "exact/grow.h"
+#include "runtime/parallel.h"
 #include "surface/fit.h"
 
 #include <algorithm>
@@ -27,29 +28,44 @@ std::vector<std::vector<std::uint32_t>> faces_of_regions(const Explained& state)
 
 struct Border {
     std::int32_t a, b;  ///< a < b
-    double length = 0;
-    double bend = 0;  ///< largest dihedral angle along it
+    double bend = 0;    ///< largest dihedral angle along it
+
+    bool operator<(const Border& other) const { return a != other.a ? a < other.a : b < other.b; }
 };
 
-std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
-    std::map<std::pair<std::int32_t, std::int32_t>, Border> borders;
-    std::size_t polls = 0;
-    for (std::size_t f = 0; f < state.region.size(); ++f) {
-        scene.control.check_often(polls);
-        for (int k = 0; k < 3; ++k) {
-            const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
-            if (g < 0) continue;
-            const std::int32_t a = state.region[f], b = state.region[static_cast<std::size_t>(g)];
-            if (a < 0 || b < 0 || a >= b) continue;
-            Border& border = borders.try_emplace({a, b}, Border{a, b}).first->second;
-            border.length += norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
-            border.bend = std::max(border.bend, dihedral(scene.mesh, f, static_cast<std::size_t>(g)));
+/// One a pair of regions, in their order.
+void merge_equal(std::vector<Border>& borders) {
+    std::sort(borders.begin(), borders.end());
+    std::size_t count = 0;
+    for (const Border& border : borders) {
+        if (count > 0 && borders[count - 1].a == border.a && borders[count - 1].b == border.b) {
+            borders[count - 1].bend = std::max(borders[count - 1].bend, border.bend);
+        } else {
+            borders[count++] = border;
         }
     }
-    std::vector<Border> list;
-    list.reserve(borders.size());
-    for (const auto& [key, border] : borders) list.push_back(border);
-    return list;
+    borders.resize(count);
+}
+
+std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
+    constexpr std::size_t block = 16384;
+    std::vector<std::vector<Border>> found((state.region.size() + block - 1) / block);
+    runtime::parallel_blocks(state.region.size(), block, [&](std::size_t begin, std::size_t end) {
+        scene.control.check();
+        std::vector<Border>& own = found[begin / block];
+        for (std::size_t f = begin; f < end; ++f) {
+            for (const std::int32_t g : scene.mesh.neighbors[f]) {
+                if (g < 0) continue;
+                const std::int32_t a = state.region[f], b = state.region[static_cast<std::size_t>(g)];
+                if (a >= 0 && a < b) own.push_back({a, b, dihedral(scene.mesh, f, static_cast<std::size_t>(g))});
+            }
+        }
+        merge_equal(own);
+    });
+    std::vector<Border> borders;
+    for (const std::vector<Border>& own : found) borders.insert(borders.end(), own.begin(), own.end());
+    merge_equal(borders);
+    return borders;
 }
 
 class Uniter {

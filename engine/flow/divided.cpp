@@ -32,13 +32,16 @@ constexpr double least_gain = 1.1, most_price = 0.5;
 
 class DividedSearch {
   public:
-    DividedSearch(const FlowInput& input, const partition::Labels& labels, const std::vector<Surface>& surfaces)
-        : mesh_(input.mesh), control_(input.control), labels_(labels), surfaces_(surfaces) {}
+    DividedSearch(const FlowInput& input, const exact::ExactSurfaces& exact)
+        : mesh_(input.mesh),
+          control_(input.control),
+          labels_(exact.labels),
+          surfaces_(exact.surfaces),
+          tolerances_(exact.tolerances),
+          facets_(exact.facets) {}
 
     std::optional<DividedSurfaces> run() {
         if (!has_gentle_rows()) return std::nullopt;
-        tolerances_ = exact::choose_tolerances(mesh_);
-        facets_ = exact::find_facets(mesh_, tolerances_, exact::face_heights(mesh_), control_);
         control_.check();
         const std::vector<std::uint8_t> wanted = components_with_divided_rows();
         if (wanted.empty()) return std::nullopt;
@@ -275,15 +278,14 @@ class DividedSearch {
     const runtime::RunControl& control_;
     const partition::Labels& labels_;
     const std::vector<Surface>& surfaces_;
-    exact::Tolerances tolerances_;
-    exact::Facets facets_;
+    const exact::Tolerances& tolerances_;
+    const exact::Facets& facets_;
 };
 
 }  // namespace
 
-std::optional<DividedSurfaces> find_divided(const FlowInput& input, const partition::Labels& labels,
-                                            const std::vector<Surface>& surfaces) {
-    return DividedSearch(input, labels, surfaces).run();
+std::optional<DividedSurfaces> find_divided(const FlowInput& input, const exact::ExactSurfaces& exact) {
+    return DividedSearch(input, exact).run();
 }
 
 }  // namespace quadseg::flow

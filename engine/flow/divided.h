@@ -2,6 +2,7 @@
 // vertices lie on the facets instead of on the surface, so that no surface is exact; without them, one is.
 #pragma once
 
+#include "exact/exact.h"
 #include "flow/flow.h"
 
 #include <cstdint>
@@ -17,10 +18,10 @@ struct DividedSurfaces {
     std::vector<std::uint8_t> on_facets;
 };
 
-/// Looks for the surfaces of the plain tessellation where planes, or faces without a surface (label −1), lie in rows
-/// that fold gently and have vertices that are no corners of theirs. Components are taken over as a whole where that
-/// explains as much by less, else surfaces that take the place of whole regions. None: nothing changes. Throws Stopped.
-std::optional<DividedSurfaces> find_divided(const FlowInput& input, const partition::Labels& labels,
-                                            const std::vector<Surface>& surfaces);
+/// exact: complete, of input.mesh. Looks for the surfaces of the plain tessellation where planes, or faces without a
+/// surface (label −1), lie in rows that fold gently and have vertices that are no corners of theirs. Components are
+/// taken over as a whole where that explains as much by less, else surfaces that take the place of whole regions. None:
+/// nothing changes. Throws Stopped.
+std::optional<DividedSurfaces> find_divided(const FlowInput& input, const exact::ExactSurfaces& exact);
 
 }  // namespace quadseg::flow

@@ -20,14 +20,13 @@ namespace {
 constexpr double little = 0.1;
 
 /// Numbers regions by first face; surfaces of regions that have no faces any more go.
-void drop_empty_regions(FlowResult& result) {
+void drop_empty_regions(partition::Labels& labels, std::vector<Surface>& surfaces) {
     std::vector<std::int32_t> renumbered;
-    result.regions = partition::compact(result.labels, renumbered);
-    std::vector<Surface> surfaces(result.regions);
+    std::vector<Surface> kept(partition::compact(labels, renumbered));
     for (std::size_t r = 0; r < renumbered.size(); ++r) {
-        if (renumbered[r] >= 0) surfaces[static_cast<std::size_t>(renumbered[r])] = result.surfaces[r];
+        if (renumbered[r] >= 0) kept[static_cast<std::size_t>(renumbered[r])] = surfaces[r];
     }
-    result.surfaces = std::move(surfaces);
+    surfaces = std::move(kept);
 }
 
 /// Surfaces that noise would never let through, on a good part of the mesh. Planes do not count: scans have bases.
@@ -43,13 +42,13 @@ bool shows_exact_surfaces(const mesh::WorkMesh& mesh, const exact::ExactSurfaces
 }
 
 /// Surfaces of divided tessellations take the place of the planes that their facets are.
-void look_beneath_divisions(const FlowInput& input, FlowResult& result) {
-    std::optional<DividedSurfaces> divided = find_divided(input, result.labels, result.surfaces);
+void look_beneath_divisions(const FlowInput& input, exact::ExactSurfaces& exact, std::vector<std::uint8_t>& on_facets) {
+    std::optional<DividedSurfaces> divided = find_divided(input, exact);
     if (!divided) return;
-    result.labels = std::move(divided->labels);
-    result.surfaces = std::move(divided->surfaces);
-    result.on_facets = std::move(divided->on_facets);
-    drop_empty_regions(result);
+    exact.labels = std::move(divided->labels);
+    exact.surfaces = std::move(divided->surfaces);
+    drop_empty_regions(exact.labels, exact.surfaces);
+    on_facets = std::move(divided->on_facets);
 }
 
 }  // namespace
@@ -67,27 +66,28 @@ FlowResult run_standard(const FlowInput& input) {
     } catch (const runtime::Stopped&) {
         return run_fast(input, fast_options(input.options));
     }
-    FlowResult result;
-    result.labels = std::move(exact.labels);
-    result.surfaces = std::move(exact.surfaces);
-    result.regions = result.surfaces.size();
+    FlowResult result, rest;
     result.noise = exact.noise;
     result.partial = exact.partial;
     if (result.partial) result.stop = input.control.cancelled() ? StopReason::cancelled : StopReason::deadline;
-    FlowResult rest;
+    bool free = true;
     try {
-        if (!result.partial) look_beneath_divisions(input, result);
-        if (std::find(result.labels.begin(), result.labels.end(), -1) == result.labels.end()) return result;
-        rest = group_freeform(input, result.surfaces, result.labels);
+        if (!result.partial) look_beneath_divisions(input, exact, result.on_facets);
+        free = std::find(exact.labels.begin(), exact.labels.end(), -1) != exact.labels.end();
+        if (free) rest = group_freeform(input, exact.surfaces, exact.labels);
     } catch (const runtime::Stopped& stopped) {
-        rest.labels.resize(result.labels.size());
-        std::transform(result.labels.begin(), result.labels.end(), rest.labels.begin(),
+        rest.labels.resize(exact.labels.size());
+        std::transform(exact.labels.begin(), exact.labels.end(), rest.labels.begin(),
                        [](std::int32_t label) { return label < 0 ? 0 : -1; });
         rest.regions = partition::connected_parts({&input.mesh, input.features, {}}, rest.labels);
         rest.partial = true;
         rest.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
     }
-    drop_empty_regions(result);
+    if (free) drop_empty_regions(exact.labels, exact.surfaces);
+    result.labels = std::move(exact.labels);
+    result.surfaces = std::move(exact.surfaces);
+    result.regions = result.surfaces.size();
+    if (!free) return result;
     const auto first = static_cast<std::int32_t>(result.regions);
     for (std::size_t f = 0; f < result.labels.size(); ++f) {
         if (result.labels[f] < 0) result.labels[f] = first + rest.labels[f];

@@ -96,7 +96,7 @@ TEST(Divided, VerticesOnFacetsAreNoEvidence) {
     const mesh::WorkMesh mesh = test::work_mesh(s);
     const exact::ExactSurfaces direct = exact::find_exact_surfaces(mesh, free_run);
     const Options options;
-    const auto divided = flow::find_divided({mesh, nullptr, options, free_run}, direct.labels, direct.surfaces);
+    const auto divided = flow::find_divided({mesh, nullptr, options, free_run}, direct);
     ASSERT_TRUE(divided.has_value());
     EXPECT_EQ(std::count(divided->on_facets.begin(), divided->on_facets.end(), 1), 2 * sides / 3);
 }
@@ -106,7 +106,7 @@ TEST(Divided, WhatIsNotDividedStays) {
         const mesh::WorkMesh mesh = mesh::build_work_mesh(datasets::generate(name, 6000).mesh.view(), free_run);
         const exact::ExactSurfaces found = exact::find_exact_surfaces(mesh, free_run);
         const Options options;
-        EXPECT_FALSE(flow::find_divided({mesh, nullptr, options, free_run}, found.labels, found.surfaces)) << name;
+        EXPECT_FALSE(flow::find_divided({mesh, nullptr, options, free_run}, found)) << name;
     }
 }
 
@@ -114,12 +114,12 @@ TEST(Divided, StopsOnDemand) {
     const datasets::Generated part = datasets::generate("shaft", 3000);
     std::vector<std::int32_t> truth = part.truth;
     const mesh::WorkMesh mesh = mesh::build_work_mesh(subdivided(part.mesh, truth).view(), free_run);
-    const partition::Labels none(mesh.face_count(), -1);
+    const exact::ExactSurfaces found = exact::find_exact_surfaces(mesh, free_run);
     Context context;
     context.cancel();
     const runtime::RunControl stopped(&context);
     const Options options;
-    EXPECT_THROW(flow::find_divided({mesh, nullptr, options, stopped}, none, {}), runtime::Stopped);
+    EXPECT_THROW(flow::find_divided({mesh, nullptr, options, stopped}, found), runtime::Stopped);
 }
 
 }  // namespace
