@@ -55,6 +55,7 @@ double distance_to_axis(const Surface& s, const Vec3& p) {
 
 TEST(Finish, ACylinderOfSixteenFacetsHasItsTrueRadiusAndAxis) {
     std::vector<std::pair<double, double>> circle;
+    circle.reserve(16);
     for (int i = 0; i < 16; ++i) circle.emplace_back(3 + 2 * std::cos(pi * i / 8), 1 + 2 * std::sin(pi * i / 8));
     const Segmentation result = segment(prism(circle, 5).view());
     EXPECT_EQ(result.regions.size(), 3U);

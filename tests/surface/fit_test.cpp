@@ -249,6 +249,7 @@ TEST(Fit, RefineConvergesFromAfarAndKeepsTheType) {
 
 TEST(Fit, MeasureReportsQuantilesOfDistances) {
     std::vector<Vec3> points;
+    points.reserve(100);
     for (int i = 0; i < 100; ++i) points.push_back({double(i), 0, i * .01});
     const SurfaceFit f = measure(plane({0, 0, 0}, {0, 0, 1}), {points, {}, {}});
     EXPECT_NEAR(f.median, .50, 1e-15);
