@@ -2,9 +2,11 @@
 
 #include "exact/hypothesis.h"
 #include "math/symmetric3.h"
+#include "runtime/parallel.h"
 #include "surface/fit.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -45,26 +47,46 @@ bool alike(double area_a, double area_b) {
 
 std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& state) {
     std::vector<RegionBorder> borders(state.surface.size());
-    std::vector<std::int32_t> last_facet(state.surface.size(), -1);
-    for (std::size_t facet = 0; facet < scene.facets.count(); ++facet) {
-        for (std::size_t j = scene.facets.begin[facet]; j < scene.facets.begin[facet + 1]; ++j) {
-            const std::int32_t r = state.region[scene.facets.face[j]];
-            if (r < 0 || last_facet[static_cast<std::size_t>(r)] == static_cast<std::int32_t>(facet)) continue;
-            last_facet[static_cast<std::size_t>(r)] = static_cast<std::int32_t>(facet);
-            ++borders[static_cast<std::size_t>(r)].facets;
+    constexpr std::size_t block = 16384;
+    runtime::parallel_blocks(scene.facets.count(), block, [&](std::size_t begin, std::size_t end) {
+        scene.control.check();
+        std::vector<std::int32_t> regions;
+        for (std::size_t facet = begin; facet < end; ++facet) {
+            regions.clear();
+            for (std::size_t j = scene.facets.begin[facet]; j < scene.facets.begin[facet + 1]; ++j) {
+                const std::int32_t r = state.region[scene.facets.face[j]];
+                if (r < 0 || std::find(regions.rbegin(), regions.rend(), r) != regions.rend()) continue;
+                regions.push_back(r);
+                std::atomic_ref(borders[static_cast<std::size_t>(r)].facets).fetch_add(1, std::memory_order_relaxed);
+            }
         }
-    }
+    });
+    // Found by all threads, summed in their order.
+    struct Edge {
+        std::uint32_t face;
+        int k;
+    };
+    std::vector<std::vector<Edge>> edges((state.region.size() + block - 1) / block);
+    runtime::parallel_blocks(state.region.size(), block, [&](std::size_t begin, std::size_t end) {
+        scene.control.check();
+        for (std::size_t f = begin; f < end; ++f) {
+            if (state.region[f] < 0) continue;
+            for (int k = 0; k < 3; ++k) {
+                const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
+                if (g < 0 || state.region[static_cast<std::size_t>(g)] != state.region[f])
+                    edges[begin / block].push_back({static_cast<std::uint32_t>(f), k});
+            }
+        }
+    });
     for (std::size_t f = 0; f < state.region.size(); ++f) {
         if (state.region[f] >= 0) borders[static_cast<std::size_t>(state.region[f])].area += scene.mesh.areas[f];
     }
     std::size_t polls = 0;
-    for (std::size_t f = 0; f < state.region.size(); ++f) {
-        scene.control.check_often(polls);
-        if (state.region[f] < 0) continue;
-        RegionBorder& border = borders[static_cast<std::size_t>(state.region[f])];
-        for (int k = 0; k < 3; ++k) {
+    for (const std::vector<Edge>& part : edges) {
+        for (const auto& [f, k] : part) {
+            scene.control.check_often(polls);
+            RegionBorder& border = borders[static_cast<std::size_t>(state.region[f])];
             const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
-            if (g >= 0 && state.region[static_cast<std::size_t>(g)] == state.region[f]) continue;
             const double length = norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
             border.perimeter += length;
             if (g < 0) continue;

@@ -1,5 +1,6 @@
 #include "exact/scene.h"
 
+#include "mesh/connected.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -30,50 +31,33 @@ std::vector<std::uint8_t> find_creases(const mesh::WorkMesh& mesh, double degree
 
 void find_charts(Scene& scene) {
     const mesh::WorkMesh& mesh = scene.mesh;
-    scene.chart.assign(mesh.face_count(), -2);
-    scene.chart_count = 0;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        if (scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[f])].sure) scene.chart[f] = -1;
-    }
-    std::vector<std::uint32_t> stack;
-    std::size_t polls = 0;
-    for (std::size_t seed = 0; seed < mesh.face_count(); ++seed) {
-        if (scene.chart[seed] != -2) continue;
-        const auto id = static_cast<std::int32_t>(scene.chart_count++);
-        scene.chart[seed] = id;
-        stack.assign(1, static_cast<std::uint32_t>(seed));
-        while (!stack.empty()) {
-            scene.control.check_often(polls);
-            const std::uint32_t f = stack.back();
-            stack.pop_back();
-            for (int k = 0; k < 3; ++k) {
-                if (scene.is_crease(f, k)) continue;
-                const auto g = static_cast<std::size_t>(mesh.neighbors[f][static_cast<std::size_t>(k)]);
-                if (scene.chart[g] != -2) continue;
-                scene.chart[g] = id;
-                stack.push_back(static_cast<std::uint32_t>(g));
-            }
-        }
-    }
+    scene.chart_count = mesh::connected_faces(
+        mesh,
+        [&](std::size_t f) { return !scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[f])].sure; },
+        [&](std::size_t f, std::size_t k, std::size_t) { return !scene.is_crease(f, static_cast<int>(k)); },
+        [&] { scene.control.check(); }, scene.chart);
 }
 
 void find_depths(Scene& scene) {
     const mesh::WorkMesh& mesh = scene.mesh;
     constexpr std::uint16_t unknown = 0xffff;
     scene.depth.assign(mesh.face_count(), unknown);
-    std::vector<std::uint32_t> ring, next;
-    std::size_t polls = 0;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        scene.control.check_often(polls);
-        bool edge = scene.in_sure_plane(f) || scene.creases[f] != 0;
-        for (std::size_t k = 0; !edge && k < 3; ++k) {
-            edge = scene.in_sure_plane(static_cast<std::size_t>(mesh.neighbors[f][k]));
-        }
-        if (edge) {
+    constexpr std::size_t block = 16384;
+    std::vector<std::vector<std::uint32_t>> edges((mesh.face_count() + block - 1) / block);
+    runtime::parallel_blocks(mesh.face_count(), block, [&](std::size_t begin, std::size_t end) {
+        scene.control.check();
+        for (std::size_t f = begin; f < end; ++f) {
+            bool edge = scene.in_sure_plane(f) || scene.creases[f] != 0;
+            for (std::size_t k = 0; !edge && k < 3; ++k) {
+                edge = scene.in_sure_plane(static_cast<std::size_t>(mesh.neighbors[f][k]));
+            }
+            if (!edge) continue;
             scene.depth[f] = 0;
-            if (!scene.in_sure_plane(f)) ring.push_back(static_cast<std::uint32_t>(f));
+            if (!scene.in_sure_plane(f)) edges[begin / block].push_back(static_cast<std::uint32_t>(f));
         }
-    }
+    });
+    std::vector<std::uint32_t> ring, next;
+    for (const std::vector<std::uint32_t>& part : edges) ring.insert(ring.end(), part.begin(), part.end());
     for (std::uint16_t d = 1; !ring.empty(); d = static_cast<std::uint16_t>(std::min<int>(d + 1, unknown - 1))) {
         scene.control.check();
         next.clear();

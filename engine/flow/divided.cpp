@@ -100,8 +100,26 @@ class DividedSearch {
                     first = many;
             }
         };
-        std::vector<Ends> at_vertex(mesh_.vertex_count());
+        // Facets with two different ones beside them, all of more than a triangle …
+        std::vector<Ends> beside(facets_.count());
         std::size_t polls = 0;
+        for (std::size_t f = 0; f < labels_.size(); ++f) {
+            control_.check_often(polls);
+            const std::int32_t own = facets_.of_face[f];
+            if (!is_loose(f) || is_triangle(own)) continue;
+            for (const std::int32_t g : mesh_.neighbors[f]) {
+                if (g == mesh::no_face || !is_loose(static_cast<std::size_t>(g))) continue;
+                const std::int32_t other = facets_.of_face[static_cast<std::size_t>(g)];
+                if (own == other || is_triangle(other) || !folds_gently(f, static_cast<std::size_t>(g)) ||
+                    !folds_clearly(f, static_cast<std::size_t>(g)))
+                    continue;
+                beside[static_cast<std::size_t>(own)].add(other);
+            }
+        }
+        const auto in_row = [&](const Ends& ends) { return ends.first == many || ends.second != none; };
+        if (std::none_of(beside.begin(), beside.end(), in_row)) return {};
+        // … are a row where they have vertices that are no corners of theirs.
+        std::vector<Ends> at_vertex(mesh_.vertex_count());
         for (std::size_t f = 0; f < labels_.size(); ++f) {
             control_.check_often(polls);
             for (std::size_t k = 0; k < 3; ++k) {
@@ -111,27 +129,18 @@ class DividedSearch {
                 ends.first = at_vertex[mesh_.faces[f][(k + 1) % 3]].first = many;
             }
         }
-        // A facet with such a vertex and two different facets beside it, of more than a triangle as well: a row.
-        std::vector<Ends> beside(facets_.count());
-        std::vector<std::uint8_t> divided(facets_.count(), 0);
-        for (std::size_t f = 0; f < labels_.size(); ++f) {
-            control_.check_often(polls);
-            const std::int32_t own = facets_.of_face[f];
-            if (!is_loose(f) || is_triangle(own)) continue;
-            for (std::size_t k = 0; k < 3; ++k) {
-                if (at_vertex[mesh_.faces[f][k]].first != many) divided[static_cast<std::size_t>(own)] = 1;
-                const std::int32_t g = mesh_.neighbors[f][k];
-                if (g == mesh::no_face || !is_loose(static_cast<std::size_t>(g))) continue;
-                const std::int32_t other = facets_.of_face[static_cast<std::size_t>(g)];
-                if (own == other || is_triangle(other) || !folds_gently(f, static_cast<std::size_t>(g)) ||
-                    !folds_clearly(f, static_cast<std::size_t>(g)))
-                    continue;
-                beside[static_cast<std::size_t>(own)].add(other);
+        const auto is_divided = [&](std::size_t i) {
+            for (std::size_t j = facets_.begin[i]; j < facets_.begin[i + 1]; ++j) {
+                const std::uint32_t f = facets_.face[j];
+                if (!is_loose(f)) continue;
+                for (const std::uint32_t v : mesh_.faces[f])
+                    if (at_vertex[v].first != many) return true;
             }
-        }
+            return false;
+        };
         std::vector<std::size_t> rows(mesh_.component_count, 0);
         for (std::size_t i = 0; i < facets_.count(); ++i) {
-            if (divided[i] == 0 || (beside[i].first != many && beside[i].second == none)) continue;
+            if (!in_row(beside[i]) || !is_divided(i)) continue;
             ++rows[static_cast<std::size_t>(mesh_.components[facets_.face[facets_.begin[i]]])];
         }
         std::vector<std::uint8_t> wanted(rows.size());
