@@ -1,6 +1,7 @@
 #include "flow/standard.h"
 
 #include "exact/exact.h"
+#include "flow/accidents.h"
 #include "flow/divided.h"
 #include "flow/fast.h"
 #include "flow/freeform.h"
@@ -70,6 +71,7 @@ FlowResult run_standard(const FlowInput& input) {
     result.noise = exact.noise;
     result.partial = exact.partial;
     if (result.partial) result.stop = input.control.cancelled() ? StopReason::cancelled : StopReason::deadline;
+    if (exact.covered < little) release_accidents(exact.labels);
     bool free = true;
     try {
         if (!result.partial) look_beneath_divisions(input, exact, result.on_facets);
