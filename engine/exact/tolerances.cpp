@@ -120,8 +120,9 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
             const int exponent = static_cast<int>(std::floor(std::log10(std::abs(x))));
             values.push_back(x);
             exponents.push_back(exponent);
-            digits.push_back(significant_digits(x, exponent, slack, power));
-            quanta.push_back(power(exponent));
+            const int shown = significant_digits(x, exponent, slack, power);
+            digits.push_back(shown);
+            quanta.push_back(power(exponent + 1 - shown));
         }
     }
     if (total == 0) return 1e-16;
@@ -131,10 +132,10 @@ double coordinate_precision(const mesh::WorkMesh& mesh) {
         for (std::size_t i = 0; i < values.size(); ++i) decimals.look_at(values[i], static_cast<int>(exponents[i]));
         precision = std::max({precision, 0.29 * quantile(float_quanta, 0.5), 0.29 * decimals.step()});
     }
-    // Full doubles show most_digits; a text file shows the digits that it was printed with.
+    // Full doubles show most_digits; a text file shows the digits that it was printed with, or its decimals.
     const double most = quantile(digits, 0.9);
     if (most >= least_digits && most < most_digits - 1) {
-        precision = std::max(precision, 0.29 * quantile(quanta, 0.5) * std::pow(10.0, 1 - most));
+        precision = std::max(precision, 0.29 * quantile(quanta, 0.5));
     }
     return std::min(precision * mesh.frame.scale, worst_precision);
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace quadseg::flow {
@@ -109,45 +108,6 @@ double projected_edge(const mesh::WorkMesh& mesh, const std::vector<Vec3>& smoot
     return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-/// Share of the samples that lie on multiples of 1/unit.
-double share_on_grid(const std::vector<double>& samples, double unit, double rounding) {
-    const auto on_grid = [&](double x) {
-        const double y = x * unit;
-        return std::abs(y - std::round(y)) <= rounding * unit;
-    };
-    return static_cast<double>(std::count_if(samples.begin(), samples.end(), on_grid)) /
-           static_cast<double>(samples.size());
-}
-
-double coordinate_precision(const mesh::WorkMesh& mesh) {
-    const std::size_t stride = 1 + mesh.vertex_count() / most_samples;
-    std::vector<double> samples;
-    double largest = 1 / mesh.frame.scale;
-    for (std::size_t v = 0; v < mesh.vertex_count(); v += stride) {
-        const Vec3 x = mesh.frame.to_input(mesh.positions[v]);
-        for (int k = 0; k < 3; ++k) {
-            samples.push_back(x[k]);
-            largest = std::max(largest, std::abs(x[k]));
-        }
-    }
-    if (samples.empty()) return 0;
-    constexpr double most = 0.95, uniform_deviation = 0.28867513459481287;  // 1/√12
-    // The way to the unit frame and back costs some bits.
-    const double rounding = 8 * std::numeric_limits<double>::epsilon() * largest;
-    const auto is_float = [&](double x) {
-        return std::abs(x - static_cast<double>(static_cast<float>(x))) <= rounding;
-    };
-    for (double unit = 1; rounding * unit < 0.01; unit *= 10) {
-        if (share_on_grid(samples, unit, rounding) >= most) return uniform_deviation / unit * mesh.frame.scale;
-    }
-    const auto floats = static_cast<double>(std::count_if(samples.begin(), samples.end(), is_float));
-    if (floats >= most * static_cast<double>(samples.size())) {
-        for (double& x : samples) x = std::abs(x);
-        return uniform_deviation * std::numeric_limits<float>::epsilon() * quantile(samples, 0.5) * mesh.frame.scale;
-    }
-    return rounding * mesh.frame.scale;
-}
-
 }  // namespace
 
 double misfit_angle(const NoiseEstimate& noise) noexcept {
@@ -164,7 +124,6 @@ NoiseEstimate estimate_noise(const mesh::WorkMesh& mesh, const runtime::RunContr
     const EdgeStatistics edges = sample_edges(mesh);
     estimate.edge = edges.mean_length;
     estimate.flat = edges.flat;
-    estimate.precision = coordinate_precision(mesh);
     // Of white noise of standard deviation 1 edge the dihedral angles have 2.31; .2533 is the 20 % quantile of
     // |N(0,1)|.
     estimate.sigma = edges.low_angle / 0.2533 * edges.mean_length / 2.31;

@@ -8,10 +8,9 @@ namespace quadseg::flow {
 
 /// All in the unit frame.
 struct NoiseEstimate {
-    double sigma = 0;      ///< standard deviation of the vertices along their normals; about 0 on clean meshes
-    double edge = 0;       ///< mean edge length, as it would be without the noise
-    double precision = 0;  ///< standard deviation of the rounding of the coordinates in the file (float32, decimals)
-    double flat = 0;       ///< share of edges that are flatter than noise leaves them
+    double sigma = 0;  ///< standard deviation of the vertices along their normals; about 0 on clean meshes
+    double edge = 0;   ///< mean edge length, as it would be without the noise
+    double flat = 0;   ///< share of edges that are flatter than noise leaves them
 
     /// Above this normals are of little use and every decision needs an honest price of chance.
     bool noisy() const noexcept { return sigma > 0.02 * edge; }

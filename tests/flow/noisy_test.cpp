@@ -137,23 +137,6 @@ TEST(Noise, IsFoundWhereItIsAsLargeAsTheEdges) {
     }
 }
 
-TEST(Noise, PrecisionIsTheRoundingOfTheFile) {
-    test::Shape shape = test::bumpy_grid(20);
-    for (double& x : shape.positions) x += 0.123456789012345;
-    const auto precision = [](const test::Shape& s) {
-        const mesh::WorkMesh mesh = test::work_mesh(s);
-        return estimate_noise(mesh, free_run).precision / mesh.frame.scale;
-    };
-    EXPECT_LT(precision(shape), 1e-12);
-    test::Shape decimals = shape;
-    for (double& x : decimals.positions) x = std::round(x * 1e4) / 1e4;
-    EXPECT_NEAR(precision(decimals), 1e-4 / std::sqrt(12.0), 1e-6);
-    test::Shape floats = shape;
-    for (double& x : floats.positions) x = static_cast<double>(static_cast<float>(x));
-    EXPECT_GT(precision(floats), 1e-9);
-    EXPECT_LT(precision(floats), 1e-6);
-}
-
 TEST(Noise, AllowanceIsContinuousAndFades) {
     double before = flow::misfit_angle({0, 1, 0});
     EXPECT_NEAR(before, 4.4, 1e-12);
