@@ -55,10 +55,12 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
             regions.clear();
             for (std::size_t j = scene.facets.begin[facet]; j < scene.facets.begin[facet + 1]; ++j) {
                 const std::int32_t r = state.region[scene.facets.face[j]];
-                if (r < 0 || std::find(regions.rbegin(), regions.rend(), r) != regions.rend()) continue;
-                regions.push_back(r);
-                std::atomic_ref(borders[static_cast<std::size_t>(r)].facets).fetch_add(1, std::memory_order_relaxed);
+                if (r >= 0 && (regions.empty() || regions.back() != r)) regions.push_back(r);
             }
+            std::sort(regions.begin(), regions.end());
+            regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+            for (const std::int32_t r : regions)
+                std::atomic_ref(borders[static_cast<std::size_t>(r)].facets).fetch_add(1, std::memory_order_relaxed);
         }
     });
     // Found by all threads, summed in their order.
