@@ -51,12 +51,6 @@ Region describe_region(const mesh::WorkMesh& mesh, std::size_t r, const FinalSur
     return region;
 }
 
-std::vector<double> areas_of(const std::vector<RegionQuality>& quality) {
-    std::vector<double> areas(quality.size());
-    for (std::size_t r = 0; r < areas.size(); ++r) areas[r] = quality[r].area;
-    return areas;
-}
-
 /// Section 4.4.1, and the surfaces refitted after.
 void smooth(const FlowInput& input, FlowResult& flow, partition::RegionFaces& regions,
             std::vector<FinalSurface>& surfaces, Segmentation& result) {
@@ -80,12 +74,10 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     const bool whole = !flow.partial && !input.control.should_stop();
     if (options.smooth && whole) smooth(input, flow, regions, surfaces, result);
 
-    std::vector<RegionQuality> quality = measure_quality(mesh, regions, surfaces, input.control);
     std::vector<std::int32_t> ids;
-    if (options.regularities && options.preset == Preset::standard && whole) {
-        result.regularities = snap_regularities(surfaces, areas_of(quality), flow.noise);
-        if (!result.regularities.empty()) quality = measure_quality(mesh, regions, surfaces, input.control);
-    }
+    if (options.regularities && options.preset == Preset::standard && whole)
+        result.regularities = snap_regularities(surfaces, region_areas(mesh, regions), flow.noise);
+    const std::vector<RegionQuality> quality = measure_quality(mesh, regions, surfaces, input.control);
     if (input.control.should_stop()) {
         flow.partial = true;  // surfaces and distances may be rough ones
         for (std::size_t r = 0; r < flow.regions; ++r) ids.push_back(static_cast<std::int32_t>(r));

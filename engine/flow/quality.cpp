@@ -140,6 +140,18 @@ void add_gradient(const mesh::WorkMesh& mesh, const Faces& faces, const quadric:
 /// Faces that the figures of a stopped call are estimated from, all regions together, at least one a block.
 constexpr std::size_t block_faces = 4096, sampled_faces = 4096, least_share = 64;
 
+std::vector<Block> cut_into_blocks(const partition::RegionFaces& regions) {
+    std::vector<Block> blocks;
+    for (std::size_t r = 0; r < regions.count(); ++r) {
+        for (std::size_t b = regions.begin[r]; b < regions.begin[r + 1]; b += block_faces) {
+            blocks.push_back(
+                {static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(b),
+                 static_cast<std::uint32_t>(std::min<std::size_t>(b + block_faces, regions.begin[r + 1]))});
+        }
+    }
+    return blocks;
+}
+
 RegionQuality measure_faces(const mesh::WorkMesh& mesh, const Faces& faces, const FinalSurface& final) {
     RegionQuality q;
     surface::SurfaceEvaluator(final.surface).visit([&](const auto& evaluator) {
@@ -175,17 +187,20 @@ RegionQuality estimate_faces(const mesh::WorkMesh& mesh, const Faces& faces, con
 
 }  // namespace
 
+std::vector<double> region_areas(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions) {
+    std::vector<double> areas(regions.count(), 0);
+    for (const Block& block : cut_into_blocks(regions)) {
+        double area = 0;  // in the order of measure_quality()
+        for (std::size_t i = block.begin; i < block.end; ++i) area += mesh.areas[regions.face[i]];
+        areas[block.region] += area;
+    }
+    return areas;
+}
+
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,
                                            const std::vector<FinalSurface>& surfaces,
                                            const runtime::RunControl& control) {
-    std::vector<Block> blocks;
-    for (std::size_t r = 0; r < regions.count(); ++r) {
-        for (std::size_t b = regions.begin[r]; b < regions.begin[r + 1]; b += block_faces) {
-            blocks.push_back(
-                {static_cast<std::uint32_t>(r), static_cast<std::uint32_t>(b),
-                 static_cast<std::uint32_t>(std::min<std::size_t>(b + block_faces, regions.begin[r + 1]))});
-        }
-    }
+    const std::vector<Block> blocks = cut_into_blocks(regions);
     std::vector<RegionQuality> parts(blocks.size());
     const std::size_t share = std::max(least_share, mesh.face_count() / sampled_faces);
     runtime::parallel_for(blocks.size(), control.should_stop() ? 256 : 1, [&](std::size_t i) {

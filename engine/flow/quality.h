@@ -19,6 +19,9 @@ struct RegionQuality {
     double against = 0;              ///< area where n·∇f(c_t) ≤ 0
 };
 
+/// RegionQuality::area of every region.
+std::vector<double> region_areas(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions);
+
 /// Exact distances; O(F) evaluations, parallel over blocks of faces. Once `control` says stop, what is left is
 /// estimated from a few.
 std::vector<RegionQuality> measure_quality(const mesh::WorkMesh& mesh, const partition::RegionFaces& regions,

@@ -13,14 +13,15 @@
 namespace quadseg::io {
 
 inline bool is_blank(char c) noexcept {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+    // Most are digits: one comparison.
+    return c <= ' ' && (c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f');
 }
 inline void skip_blanks(const char*& p) noexcept {
     while (is_blank(*p)) ++p;
 }
 /// What may follow a number or word.
 inline bool is_separator(char c) noexcept {
-    return is_blank(c) || c == '\n' || c == '#';
+    return c == ' ' || c == '\n' || is_blank(c) || c == '#';
 }
 inline void skip_word(const char*& p) noexcept {
     while (!is_blank(*p) && *p != '\n') ++p;

@@ -7,6 +7,7 @@
 #include "io/text_blocks.h"
 #include "runtime/parallel.h"
 
+#include <array>
 #include <cmath>
 
 namespace quadseg::io {
@@ -93,6 +94,19 @@ std::optional<Fault> read_vertex(const char* p, const char* end, std::size_t ver
     return {};
 }
 
+/// Three indices in range; else nothing is taken.
+bool read_triangle(const char* p, std::size_t vertices, FaceBlock& block) {
+    std::array<std::uint32_t, 3> corners;
+    for (std::uint32_t& corner : corners) {
+        std::int64_t index = 0;
+        if (!take_integer(p, index) || index < 0 || static_cast<std::size_t>(index) >= vertices) return false;
+        corner = static_cast<std::uint32_t>(index);
+    }
+    block.corners.insert(block.corners.end(), corners.begin(), corners.end());
+    block.close_face(3);
+    return true;
+}
+
 std::optional<Fault> read_face(const char* p, std::size_t face, std::size_t vertices, FaceBlock& block) {
     std::int64_t size = 0;
     if (!take_integer(p, size)) {
@@ -101,6 +115,7 @@ std::optional<Fault> read_face(const char* p, std::size_t face, std::size_t vert
             "face " + std::to_string(face) + " (counted from 0) needs its number of corners; found " + quoted_word(p)};
     }
     if (size < 3) return too_few_corners(p, face, size);
+    if (size == 3 && read_triangle(p, vertices, block)) return {};
     for (std::int64_t k = 0; k < size; ++k) {
         std::int64_t index = 0;
         if (!take_integer(p, index)) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace quadseg::quadric {
 
@@ -29,17 +30,7 @@ class Cholesky {
             for (std::size_t j = N + 1; j < width; ++j) row_[i][j] = 0;
         }
         for (std::size_t i = 0; i < N; ++i) row_[i][i] += ridge * a[i][i];
-        for (std::size_t i = 0; i < N; ++i) {
-            const double pivot = row_[i][i];
-            if (!(pivot > threshold * a[i][i]) || !(pivot > 0)) return false;
-            inverse_[i] = 1 / pivot;
-            for (std::size_t k = i + 1; k < N; ++k) {
-                const double factor = row_[i][k] * inverse_[i];
-                // Whole rows: what lies left of the diagonal is never read, and a fixed length vectorises.
-                for (std::size_t j = 0; j < width; ++j) row_[k][j] -= factor * row_[i][j];
-            }
-        }
-        return true;
+        return eliminate(a, threshold, std::make_index_sequence<N>{});
     }
     /// The same with a ridge of singular_pivot · N where the matrix is singular to rounding.
     /// usable = false only for matrices that are not finite.
@@ -93,6 +84,25 @@ class Cholesky {
 
   private:
     static constexpr std::size_t width = (N + 1 + 3) / 4 * 4;
+
+    template <std::size_t... I>
+    bool eliminate(const Matrix<N>& a, double threshold, std::index_sequence<I...> /*rows*/) noexcept {
+        return (eliminate_row<I>(threshold * a[I][I], std::make_index_sequence<N - 1 - I>{}) && ...);
+    }
+    template <std::size_t I, std::size_t... K>
+    bool eliminate_row(double least, std::index_sequence<K...> /*rows below*/) noexcept {
+        const double pivot = row_[I][I];
+        if (!(pivot > least) || !(pivot > 0)) return false;
+        inverse_[I] = 1 / pivot;
+        (subtract_row<I, I + 1 + K>(row_[I][I + 1 + K] * inverse_[I]), ...);
+        return true;
+    }
+    /// From the fours on in which the diagonal is: what lies left of it is never read, and lengths are fixed.
+    template <std::size_t From, std::size_t Row>
+    void subtract_row(double factor) noexcept {
+        for (std::size_t j = Row / 4 * 4; j < width; ++j) row_[Row][j] -= factor * row_[From][j];
+    }
+
     std::array<std::array<double, width>, N> row_;
     Vector<N> inverse_;
 };

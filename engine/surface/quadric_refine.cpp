@@ -72,6 +72,21 @@ Vec3 monomial_gradient(int k, const Vec3& u) {
     }
 }
 
+/// Slopes of the ten monomials at u along d.
+void gradients_along(const Vec3& d, const Vec3& u, double* out) {
+    const double all[10] = {0,
+                            d.x,
+                            d.y,
+                            d.z,
+                            d.x * (2 * u.x),
+                            d.x * u.y + d.y * u.x,
+                            d.x * u.z + d.z * u.x,
+                            d.y * (2 * u.y),
+                            d.y * u.z + d.z * u.y,
+                            d.z * (2 * u.z)};
+    std::copy(all, all + 10, out);
+}
+
 Vec3 hessian_times(const Coefficients& c, const Vec3& v) {
     return {2 * c[4] * v.x + c[5] * v.y + c[6] * v.z, c[5] * v.x + 2 * c[7] * v.y + c[8] * v.z,
             c[6] * v.x + c[8] * v.y + 2 * c[9] * v.z};
@@ -214,7 +229,7 @@ bool refine_quadric(QuadricFamily family, LocalPoints& points, const QuadricFram
     for (int iteration = 0; iteration < 2 * options.iterations; ++iteration) {
         if (!fresh) {
             system = SmallSystem(n);
-            double row[most_unknowns], all[10];
+            double row[most_unknowns]{}, all[10], along[10];
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const Vec3 u = in_frame(best, points.point(i)), gradient = quadric::gradient(best.c, u);
                 const double steep = norm(gradient), r = points.distance[i];
@@ -222,15 +237,13 @@ bool refine_quadric(QuadricFamily family, LocalPoints& points, const QuadricFram
                 const double inverse = 1 / std::max(steep, floor);
                 const Vec3 unit = steep > floor ? gradient / steep : Vec3{};
                 values(u, all);
+                gradients_along(unit, u, along);
                 for (int k = 0; k < shape.mode_count; ++k) {
                     const int mode = shape.modes[k];
-                    double f = all[mode];
-                    Vec3 df = monomial_gradient(mode, u);
-                    if (shape.tied && mode == 4) {
-                        f += all[7];
-                        df += monomial_gradient(7, u);
-                    }
-                    row[k] = (f - r * dot(unit, df)) * inverse;
+                    const bool tied = shape.tied && mode == 4;
+                    const double f = tied ? all[4] + all[7] : all[mode];
+                    const double slope = tied ? along[4] + along[7] : along[mode];
+                    row[k] = (f - r * slope) * inverse;
                 }
                 auto moving = [&](const Vec3& du) {
                     return (dot(gradient, du) - r * dot(unit, hessian_times(best.c, du))) * inverse;
@@ -241,8 +254,10 @@ bool refine_quadric(QuadricFamily family, LocalPoints& points, const QuadricFram
                     row[shape.mode_count + shape.rotations + k] = -moving(e[k]);
                 const double w = points.weight[i] / (scale > 0 ? 1 + r * r / (scale * scale) : 1);
                 for (int a = 0; a < n; ++a) {
-                    for (int b = 0; b <= a; ++b) system.h[a][b] += w * row[a] * row[b];
-                    system.g[a] += w * row[a] * r;
+                    // Whole rows, of which the lower triangle counts: a fixed length vectorises.
+                    const double weighted = w * row[a];
+                    for (int b = 0; b < most_unknowns; ++b) system.h[a][b] += weighted * row[b];
+                    system.g[a] += weighted * r;
                 }
             }
             // f and its multiples are one surface: no step along c.

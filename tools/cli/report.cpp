@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace quadseg::cli {
 namespace {
@@ -10,8 +11,17 @@ namespace {
 /// Files of a long bottom-up run stay readable: the last steps, which matter, all; the earlier ones every so often.
 constexpr std::size_t history_limit = 2000;
 
+/// Initializer lists of Json cost several times as much.
+template <class... Values>
+Json list_json(Values... values) {
+    Json::array_t list;
+    list.reserve(sizeof...(values));
+    (list.emplace_back(values), ...);
+    return list;
+}
+
 Json vector_json(const std::array<double, 3>& v) {
-    return Json::array({v[0], v[1], v[2]});
+    return list_json(v[0], v[1], v[2]);
 }
 
 Json region_json(const Region& region) {
@@ -38,9 +48,21 @@ Json history_json(const std::vector<MergeStep>& history) {
     const std::size_t stride = head / tail + 1;
     for (std::size_t k = 0; k < history.size(); ++k) {
         if (k < head && k % stride != 0) continue;
-        json.push_back(Json::array({history[k].regions, history[k].energy}));
+        json.push_back(list_json(history[k].regions, history[k].energy));
     }
     return json;
+}
+
+Json regularities_json(const std::vector<Regularity>& regularities) {
+    Json::array_t list;
+    list.reserve(regularities.size());
+    for (const Regularity& regularity : regularities) {
+        Json& json = list.emplace_back(Json::object());
+        json["kind"] = to_string(regularity.kind);
+        json["regions"] = regularity.regions;
+        json["snapped"] = regularity.snapped;
+    }
+    return list;
 }
 
 Json borders_json(const BorderMeasure& measure) {
@@ -157,13 +179,11 @@ Json result_json(const std::string& file, const Mesh& mesh, const Options& optio
     json["unlabelled"] = segmentation.unlabelled;
     json["borders"] = {{"before", borders_json(segmentation.borders_before)},
                        {"after", borders_json(segmentation.borders_after)}};
-    json["regularities"] = Json::array();
-    for (const Regularity& regularity : segmentation.regularities) {
-        json["regularities"].push_back(
-            {{"kind", to_string(regularity.kind)}, {"regions", regularity.regions}, {"snapped", regularity.snapped}});
-    }
-    json["regions"] = Json::array();
-    for (const Region& region : segmentation.regions) json["regions"].push_back(region_json(region));
+    json["regularities"] = regularities_json(segmentation.regularities);
+    Json::array_t regions;
+    regions.reserve(segmentation.regions.size());
+    for (const Region& region : segmentation.regions) regions.push_back(region_json(region));
+    json["regions"] = std::move(regions);
     json["history"] = history_json(segmentation.history);
     json["energies"] = segmentation.energies;
     return json;
