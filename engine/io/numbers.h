@@ -56,14 +56,11 @@ inline bool take_digits(const char*& p, std::int64_t& value) noexcept {
     const bool negative = *q == '-';
     if (negative || *q == '+') ++q;
     const char* digits = q;
-    std::int64_t sum = 0;
-    while (*q >= '0' && *q <= '9') {
-        if (q - digits == 18) return false;
-        sum = 10 * sum + (*q++ - '0');
-    }
-    if (q == digits) return false;
+    std::uint64_t sum = 0;  // wraps round where there are too many
+    for (unsigned digit; (digit = static_cast<unsigned char>(*q) - unsigned{'0'}) <= 9; ++q) sum = 10 * sum + digit;
+    if (q == digits || q - digits > 18) return false;
     p = q;
-    value = negative ? -sum : sum;
+    value = negative ? -static_cast<std::int64_t>(sum) : static_cast<std::int64_t>(sum);
     return true;
 }
 inline bool take_integer(const char*& p, std::int64_t& value) noexcept {

@@ -4,6 +4,7 @@
 #include "partition/face_choice.h"
 #include "quadric/ladder.h"
 #include "runtime/parallel.h"
+#include "runtime/per_thread.h"
 
 #include <algorithm>
 #include <array>
@@ -232,7 +233,8 @@ class Relaxer {
 
     /// Complete fits of the dirty regions; what keeps its surface is dirty no more.
     void refit() {
-        regions_ = region_faces(labels_, count_);
+        if (!regions_current_) regions_ = region_faces(labels_, count_);
+        regions_current_ = false;
         const bool moments_known = options_.moment_steps > 0;
         if (moments_known) {
             const std::vector<Change> changed = changes();
@@ -268,7 +270,7 @@ class Relaxer {
             const std::size_t r = work[i];
             stale_[r] = 0;
             if (moments_known && fit_plane_from_moments(r)) return;
-            GatheredRegion gathered;
+            GatheredRegion& gathered = gathered_.local();
             gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
             result_.fits[r] = quadric::fit_region(gathered.soup(), fit);
         });
@@ -330,6 +332,7 @@ class Relaxer {
             }
             dirty_[static_cast<std::size_t>(cut.a)] = dirty_[static_cast<std::size_t>(cut.b)] = 1;
             moved = true;
+            regions_current_ = false;
         }
         return moved;
     }
@@ -409,6 +412,7 @@ class Relaxer {
         for (std::size_t i = 0; i < work.size(); ++i) {
             const std::size_t f = work[i];
             if (decided[i].label == labels_[f]) continue;
+            regions_current_ = false;
             dirty_[static_cast<std::size_t>(labels_[f])] = 1;
             dirty_[static_cast<std::size_t>(decided[i].label)] = 1;
             labels_[f] = decided[i].label;
@@ -438,6 +442,7 @@ class Relaxer {
         std::vector<std::uint32_t> orphans;
         for (const auto& part : cut) orphans.insert(orphans.end(), part.begin(), part.end());
         if (!orphans.empty()) flood(orphans);
+        regions_current_ = orphans.empty();
     }
 
     /// Faces of region r outside its part of largest area.
@@ -539,6 +544,8 @@ class Relaxer {
     std::vector<double> gain_;  ///< of the faces that want to move, else 0
     std::uint32_t sweep_stamp_ = 0;
     RegionFaces regions_;
+    bool regions_current_ = false;  ///< regions_ are those of labels_
+    runtime::PerThread<GatheredRegion> gathered_;
     bool complete_ = false;  ///< the fits are complete ones, not those from moments
     Relaxed result_;
 };

@@ -47,8 +47,14 @@ class Cholesky {
         return {false, true};
     }
 
+    Vector<N> solution() const noexcept {
+        Vector<N> x;
+        for (std::size_t i = 0; i < N; ++i) x[i] = row_[i][N];
+        back_substitute(x);
+        return x;
+    }
     /// Solution for the right-hand side given, in the span of the first `count` unknowns (the others 0).
-    Vector<N> solution(std::size_t count = N) const noexcept {
+    Vector<N> solution(std::size_t count) const noexcept {
         Vector<N> x{};
         for (std::size_t i = 0; i < count; ++i) x[i] = row_[i][N];
         back_substitute(x, count);
@@ -63,8 +69,9 @@ class Cholesky {
 
     void solve(Vector<N>& x) const noexcept {
         forward_substitute(x, N);
-        back_substitute(x, N);
+        back_substitute(x);
     }
+    void back_substitute(Vector<N>& x) const noexcept { substitute_rows(x, std::make_index_sequence<N>{}); }
     /// x becomes U⁻ᵀ D x over the first `count` unknowns, which is what factor() made of b.
     void forward_substitute(Vector<N>& x, std::size_t count) const noexcept {
         for (std::size_t i = 0; i < count; ++i) {
@@ -84,6 +91,17 @@ class Cholesky {
 
   private:
     static constexpr std::size_t width = (N + 1 + 3) / 4 * 4;
+
+    template <std::size_t... I>
+    void substitute_rows(Vector<N>& x, std::index_sequence<I...> /*rows*/) const noexcept {
+        (substitute_row<N - 1 - I>(x, std::make_index_sequence<I>{}), ...);
+    }
+    template <std::size_t I, std::size_t... K>
+    void substitute_row(Vector<N>& x, std::index_sequence<K...> /*unknowns after it*/) const noexcept {
+        double sum = x[I];
+        ((sum -= row_[I][I + 1 + K] * x[I + 1 + K]), ...);
+        x[I] = sum * inverse_[I];
+    }
 
     template <std::size_t... I>
     bool eliminate(const Matrix<N>& a, double threshold, std::index_sequence<I...> /*rows*/) noexcept {

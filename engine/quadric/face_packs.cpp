@@ -65,7 +65,7 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments, const std::f
     pack_count_ = (faces_ + lanes - 1) / lanes;
     packs_ = std::make_unique_for_overwrite<FacePack[]>(pack_count_);
     LaneMoments sum;
-    Pack normal_area{};
+    Pack normal_area{}, area{};
     const double area_scale = scale_ * scale_;
     for (std::size_t p = 0; p < pack_count_; ++p) {
         if (p % polled_packs == 0) poll_packs();
@@ -87,7 +87,7 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments, const std::f
         }
         packs_[p] = f;
         if (!with_moments) {
-            sum.area[0] += f.area;
+            area += f.area;
             continue;
         }
         Pack t[35];
@@ -95,7 +95,11 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments, const std::f
         sum.add(t, f.normal);
         normal_area += f.area * (f.normal[0] * f.normal[0] + f.normal[1] * f.normal[1] + f.normal[2] * f.normal[2]);
     }
-    sum.sum(moments_);
+    if (with_moments) {
+        sum.sum(moments_);
+    } else {
+        moments_.area[0] = horizontal_sum(area);
+    }
     moments_.total_area = moments_.area[0];
     moments_.normal_area = horizontal_sum(normal_area);
 }

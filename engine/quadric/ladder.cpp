@@ -2,6 +2,8 @@
 
 #include "quadric/fit.h"
 #include "quadric/nested_fits.h"
+#include "quadric/pack.h"
+#include "quadric/triangle_moments.h"
 
 namespace quadseg::quadric {
 namespace {
@@ -29,8 +31,26 @@ int degrees_of_freedom(LadderModel model) noexcept {
 
 Moments joined(const Moments& a, const Vec3& origin_a, const Moments& b, const Vec3& origin_b,
                const Vec3& origin) noexcept {
-    Moments sum = shifted(a, origin - origin_a);
-    sum += shifted(b, origin - origin_b);
+    // shifted() of both at once.
+    const Vec3 shift_a = origin - origin_a, shift_b = origin - origin_b;
+    Pair area[35];
+    for (std::size_t i = 0; i < 35; ++i) area[i] = Pair{a.area[i], b.area[i]};
+    translate_moments(&area[0], Pair{-shift_a.x, -shift_b.x}, Pair{-shift_a.y, -shift_b.y},
+                      Pair{-shift_a.z, -shift_b.z});
+    Moments sum = a;
+    for (std::size_t i = 0; i < 35; ++i) sum.area[i] = area[i][0] + area[i][1];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double mean_a = a.normal[normal_index(axis, 0)], mean_b = b.normal[normal_index(axis, 0)];
+        sum.normal[normal_index(axis, 0)] = mean_a + mean_b;
+        for (std::size_t k = 1; k < 4; ++k) {
+            const int direction = static_cast<int>(k) - 1;
+            sum.normal[normal_index(axis, k)] = (a.normal[normal_index(axis, k)] - shift_a[direction] * mean_a) +
+                                                (b.normal[normal_index(axis, k)] - shift_b[direction] * mean_b);
+        }
+    }
+    for (std::size_t i = 0; i < 6; ++i) sum.normal2[i] += b.normal2[i];
+    sum.total_area += b.total_area;
+    sum.normal_area += b.normal_area;
     return sum;
 }
 

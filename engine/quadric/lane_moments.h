@@ -6,29 +6,47 @@
 
 namespace quadseg::quadric {
 
-struct LaneMoments {
-    Pack area[35]{};
-    Pack normal[12]{};
-
+class LaneMoments {
+  public:
     /// t: triangle_moments of a pack, n: unit normals.
     void add(const Pack* t, const Pack* n, const Pack& w2, const Pack& w1) noexcept {
-        for (std::size_t i = 0; i < 35; ++i) area[i] += w2 * t[i];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Pack w = w1 * n[axis];
-            for (std::size_t k = 0; k < 4; ++k) normal[normal_index(axis, k)] += w * t[k];
-        }
+        any_ ? put<false>(t, n, w2, w1) : put<true>(t, n, w2, w1);
+        any_ = true;
     }
     /// The same with unit weights.
     void add(const Pack* t, const Pack* n) noexcept {
-        for (std::size_t i = 0; i < 35; ++i) area[i] += t[i];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t k = 0; k < 4; ++k) normal[normal_index(axis, k)] += n[axis] * t[k];
-        }
+        any_ ? put<false>(t, n) : put<true>(t, n);
+        any_ = true;
     }
     void sum(Moments& m) const noexcept {
-        for (std::size_t i = 0; i < 35; ++i) m.area[i] = horizontal_sum(area[i]);
-        for (std::size_t i = 0; i < 12; ++i) m.normal[i] = horizontal_sum(normal[i]);
+        for (std::size_t i = 0; i < 35; ++i) m.area[i] = any_ ? horizontal_sum(area_[i]) : 0;
+        for (std::size_t i = 0; i < 12; ++i) m.normal[i] = any_ ? horizontal_sum(normal_[i]) : 0;
     }
+
+  private:
+    /// Most regions are so small that zeros to add the first pack to would cost as much as the sums.
+    template <bool first>
+    static void put(Pack& sum, const Pack& value) noexcept {
+        sum = (first ? Pack{} : sum) + value;
+    }
+    template <bool first>
+    void put(const Pack* t, const Pack* n, const Pack& w2, const Pack& w1) noexcept {
+        for (std::size_t i = 0; i < 35; ++i) put<first>(area_[i], w2 * t[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Pack w = w1 * n[axis];
+            for (std::size_t k = 0; k < 4; ++k) put<first>(normal_[normal_index(axis, k)], w * t[k]);
+        }
+    }
+    template <bool first>
+    void put(const Pack* t, const Pack* n) noexcept {
+        for (std::size_t i = 0; i < 35; ++i) put<first>(area_[i], t[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t k = 0; k < 4; ++k) put<first>(normal_[normal_index(axis, k)], n[axis] * t[k]);
+        }
+    }
+
+    Pack area_[35], normal_[12];  ///< once there are any
+    bool any_ = false;
 };
 
 /// The parts of Moments that weights leave alone: ∫n nᵀ, the area, and the area of faces that have a normal.

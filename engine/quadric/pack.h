@@ -60,6 +60,22 @@ inline void where_positive(const Pack& test, const Pack& value, Pack& out) noexc
 }
 #endif
 
+/// Two doubles as one value, where two things go the same way.
+#if defined(__GNUC__)
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+#else
+struct Pair {
+    double lane[2] = {};
+    double operator[](std::size_t i) const noexcept { return lane[i]; }
+};
+inline Pair operator+(const Pair& a, const Pair& b) noexcept {
+    return {{a[0] + b[0], a[1] + b[1]}};
+}
+inline Pair operator*(const Pair& a, const Pair& b) noexcept {
+    return {{a[0] * b[0], a[1] * b[1]}};
+}
+#endif
+
 inline void square_root(const Pack& a, Pack& out) noexcept {
     for (std::size_t i = 0; i < lanes; ++i) out[i] = std::sqrt(a[i]);
 }

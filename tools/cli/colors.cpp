@@ -71,7 +71,7 @@ std::vector<std::uint8_t> face_colors(std::span<const std::int32_t> labels, std:
     for (std::size_t f = 0; f < labels.size(); ++f) {
         const auto label = static_cast<std::size_t>(labels[f]);
         const Rgb& color = labels[f] >= 0 && label < color_of_region.size() ? color_of_region[label] : unlabelled_color;
-        std::copy(color.begin(), color.end(), rgb.begin() + static_cast<std::ptrdiff_t>(3 * f));
+        for (std::size_t k = 0; k < 3; ++k) rgb[3 * f + k] = color[k];
     }
     return rgb;
 }
