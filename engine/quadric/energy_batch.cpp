@@ -41,11 +41,14 @@ void EnergyBatch::evaluate() noexcept {
             for (Pack& c : slot.c) c[l] = 0;
             for (Pack& x : slot.face.corners) x[l] = 0;
         }
-        PackEnergy energy;
-        pack_energy(&slot.c[0], slot.face, slot.floor, energy);
-        for (std::size_t l = 0; l < used; ++l) {
-            const double distance = std::max(0.0, energy.distance[l] * (1.0 / 180));
-            hybrid_[pair_of_[first + l]] = distance + weight_ * (energy.normal[l] * (1.0 / 12));
+        for (std::size_t part = 0; part < parts; ++part) {
+            constexpr std::size_t size = lanes / parts;
+            PartEnergy energy;
+            part_energy(Parts(&slot.c[0], part), FacePart(slot.face, part), part_of(slot.floor, part), energy);
+            for (std::size_t l = 0; l < size && part * size + l < used; ++l) {
+                const double distance = std::max(0.0, energy.distance[l] * (1.0 / 180));
+                hybrid_[pair_of_[first + part * size + l]] = distance + weight_ * (energy.normal[l] * (1.0 / 12));
+            }
         }
     }
 }

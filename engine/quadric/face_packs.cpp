@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace quadseg::quadric {
@@ -16,19 +17,23 @@ namespace {
 constexpr double floor_share = 0.05;        // of the median |∇f⁰(c_t)| (MATH.md §3)
 constexpr std::size_t median_sample = 512;  // faces, evenly spaced, that the median is taken of
 
-void centroid(const FacePack& f, Pack* x) noexcept {
+void centroid(const FacePart& f, Part* x) noexcept {
     for (std::size_t k = 0; k < 3; ++k) x[k] = (f.corners[k] + f.corners[k + 3] + f.corners[k + 6]) * (1.0 / 3);
 }
 
-/// Of a pack with centroids x and moments t.
-void add_weighted(const Candidate& candidate, const FacePack& f, const Pack* x, const Pack* t,
-                  LaneMoments& sum) noexcept {
-    const PackGradient g(candidate.c.data(), x[0], x[1], x[2]);
-    Pack length;
+void gradient_length(const Coefficients& c, const Part* x, Part& length) noexcept {
+    const PartGradient g(c, x[0], x[1], x[2]);
     square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
-    maximum(length, Pack{} + candidate.gradient_floor, length);
-    const Pack w1 = 1.0 / length, w2 = w1 * w1;
-    sum.add(t, f.normal, w2, w1);
+}
+
+/// Of triangles with centroids x and moments t.
+void add_weighted(const Candidate& candidate, std::size_t part, const FacePart& f, const Part* x, const Part* t,
+                  LaneMoments& sum) noexcept {
+    Part length;
+    gradient_length(candidate.c, x, length);
+    maximum(length, Part{} + candidate.gradient_floor, length);
+    const Part w1 = 1.0 / length, w2 = w1 * w1;
+    sum.add(part, t, f.normal, w2, w1);
 }
 
 bool takes_part(double area) noexcept {
@@ -90,9 +95,12 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments, const std::f
             area += f.area;
             continue;
         }
-        Pack t[35];
-        triangle_moments(&f.corners[0], f.area, t);
-        sum.add(t, f.normal);
+        for (std::size_t part = 0; part < parts; ++part) {
+            const FacePart some(f, part);
+            Part t[35];
+            triangle_moments(some.corners, some.area, t);
+            sum.add(part, t, some.normal);
+        }
         normal_area += f.area * (f.normal[0] * f.normal[0] + f.normal[1] * f.normal[1] + f.normal[2] * f.normal[2]);
     }
     if (with_moments) {
@@ -112,12 +120,14 @@ Candidate FacePacks::prepare(const Coefficients& c) {
     Pack mean_pack{};
     for (std::size_t p = 0; p < pack_count_; ++p) {
         if (p % polled_packs == 0) poll_packs();
-        Pack x[3], length;
-        centroid(packs_[p], x);
-        const PackGradient g(c.data(), x[0], x[1], x[2]);
-        square_root(g.x * g.x + g.y * g.y + g.z * g.z, length);
+        Pack length;
+        for (std::size_t part = 0; part < parts; ++part) {
+            Part x[3];
+            centroid(FacePart(packs_[p], part), x);
+            gradient_length(c, x, part_of(length, part));
+        }
         mean_pack += packs_[p].area * length;
-        for (std::size_t l = 0; l < lanes; ++l) lengths_[p * lanes + l] = length[l];
+        std::memcpy(&lengths_[p * lanes], &length, sizeof length);
     }
     const double mean = horizontal_sum(mean_pack) / moments_.area[0];
     if (!(mean > 0) || !(mean <= std::numeric_limits<double>::max())) return result;
@@ -137,13 +147,16 @@ template <std::size_t count>
 void FacePacks::reweigh_all(const std::array<const Candidate*, count>& candidates,
                             const std::array<Moments*, count>& out) const {
     std::array<LaneMoments, count> sums;
-    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
+    for (std::size_t first = 0; first < pack_count_; first += polled_packs) {
         poll_packs();
-        for (const FacePack& f : packs(part)) {
-            Pack x[3], t[35];
-            centroid(f, x);
-            triangle_moments(&f.corners[0], f.area, t);
-            for (std::size_t i = 0; i < count; ++i) add_weighted(*candidates[i], f, x, t, sums[i]);
+        for (const FacePack& f : packs(first)) {
+            for (std::size_t part = 0; part < parts; ++part) {
+                const FacePart some(f, part);
+                Part x[3], t[35];
+                centroid(some, x);
+                triangle_moments(some.corners, some.area, t);
+                for (std::size_t i = 0; i < count; ++i) add_weighted(*candidates[i], part, some, x, t, sums[i]);
+            }
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -163,16 +176,20 @@ void FacePacks::reweigh(const Candidate& candidate, Moments& out) const {
 
 void FacePacks::evaluate(Candidate& candidate) const {
     const Coefficients& c = candidate.c;
-    const Pack floor = Pack{} + candidate.gradient_floor;
+    const Part floor = Part{} + candidate.gradient_floor;
     Pack distance{}, normal{}, against{};
-    for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
+    for (std::size_t first = 0; first < pack_count_; first += polled_packs) {
         poll_packs();
-        for (const FacePack& f : packs(part)) {
-            PackEnergy energy;
-            pack_energy(c.data(), f, floor, energy);
-            distance += energy.distance;
-            normal += energy.normal;
-            against += f.area - energy.along;
+        for (std::size_t part = 0; part < parts; ++part) {
+            Part &d = part_of(distance, part), &n = part_of(normal, part), &a = part_of(against, part);
+            for (const FacePack& pack : packs(first)) {
+                const FacePart f(pack, part);
+                PartEnergy energy;
+                part_energy(c, f, floor, energy);
+                d += energy.distance;
+                n += energy.normal;
+                a += f.area - energy.along;
+            }
         }
     }
     candidate.distance = std::max(0.0, horizontal_sum(distance) * (1.0 / 180));
@@ -189,11 +206,12 @@ double FacePacks::share_on_other_sheet(const Coefficients& c) const {
     for (std::size_t part = 0; part < pack_count_; part += polled_packs) {
         poll_packs();
         for (const FacePack& f : packs(part)) {
-            Pack x[3];
-            centroid(f, x);
+            const Pack* const v = &f.corners[0];
             for (std::size_t l = 0; l < lanes; ++l) {
                 whole += f.area[l];
-                if (sheets.foot_on_second_side(c, {x[0][l], x[1][l], x[2][l]})) second += f.area[l];
+                const Vec3 sum =
+                    Vec3{v[0][l], v[1][l], v[2][l]} + Vec3{v[3][l], v[4][l], v[5][l]} + Vec3{v[6][l], v[7][l], v[8][l]};
+                if (sheets.foot_on_second_side(c, sum * (1.0 / 3))) second += f.area[l];
             }
         }
     }

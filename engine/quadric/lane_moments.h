@@ -13,6 +13,15 @@ class LaneMoments {
         any_ ? put<false>(t, n, w2, w1) : put<true>(t, n, w2, w1);
         any_ = true;
     }
+    /// Of some lanes: of the parts of a pack, one after the other.
+    void add(std::size_t part, const Part* t, const Parts& n, const Part& w2, const Part& w1) noexcept {
+        any_ ? put<false>(part, t, n, w2, w1) : put<true>(part, t, n, w2, w1);
+        any_ = any_ || part + 1 == parts;
+    }
+    void add(std::size_t part, const Part* t, const Parts& n) noexcept {
+        any_ ? put<false>(part, t, n) : put<true>(part, t, n);
+        any_ = any_ || part + 1 == parts;
+    }
     /// The same with unit weights.
     void add(const Pack* t, const Pack* n) noexcept {
         any_ ? put<false>(t, n) : put<true>(t, n);
@@ -42,6 +51,27 @@ class LaneMoments {
         for (std::size_t i = 0; i < 35; ++i) put<first>(area_[i], t[i]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             for (std::size_t k = 0; k < 4; ++k) put<first>(normal_[normal_index(axis, k)], n[axis] * t[k]);
+        }
+    }
+
+    template <bool first>
+    static void put(std::size_t part, Pack& sum, const Part& value) noexcept {
+        Part& some = part_of(sum, part);
+        some = (first ? Part{} : some) + value;
+    }
+    template <bool first>
+    void put(std::size_t part, const Part* t, const Parts& n, const Part& w2, const Part& w1) noexcept {
+        for (std::size_t i = 0; i < 35; ++i) put<first>(part, area_[i], w2 * t[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Part w = w1 * n[axis];
+            for (std::size_t k = 0; k < 4; ++k) put<first>(part, normal_[normal_index(axis, k)], w * t[k]);
+        }
+    }
+    template <bool first>
+    void put(std::size_t part, const Part* t, const Parts& n) noexcept {
+        for (std::size_t i = 0; i < 35; ++i) put<first>(part, area_[i], t[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            for (std::size_t k = 0; k < 4; ++k) put<first>(part, normal_[normal_index(axis, k)], n[axis] * t[k]);
         }
     }
 

@@ -6,9 +6,11 @@ namespace quadseg::quadric {
 
 void MomentAccumulator::flush() noexcept {
     for (std::size_t l = filled_; l < lanes; ++l) area_[l] = 0;  // what was there counts no more
-    Pack m[35];
-    triangle_moments(&corners_[0], area_, m);
-    sum_.add(m, &normal_[0]);
+    for (std::size_t part = 0; part < parts; ++part) {
+        Part m[35];
+        triangle_moments(Parts(&corners_[0], part), part_of(area_, part), m);
+        sum_.add(part, m, Parts(&normal_[0], part));
+    }
     areas_.add(area_, &normal_[0]);
     filled_ = 0;
 }

@@ -15,12 +15,24 @@ inline constexpr std::size_t lanes = 8;
 #if defined(__GNUC__)
 using Pack = double __attribute__((vector_size(lanes * sizeof(double))));
 
-inline void maximum(const Pack& a, const Pack& b, Pack& out) noexcept {
+/// What is computed at once: as much of a pack as leaves its temporaries in registers. What the lanes hold does not
+/// depend on it.
+#if defined(__AVX512F__)
+inline constexpr std::size_t parts = 1;
+using Part = Pack;
+#else
+inline constexpr std::size_t parts = 2;
+using Part = double __attribute__((vector_size(lanes / parts * sizeof(double)), may_alias));
+#endif
+
+template <class Lanes>
+void maximum(const Lanes& a, const Lanes& b, Lanes& out) noexcept {
     out = a > b ? a : b;
 }
 /// value where test > 0, else 0.
-inline void where_positive(const Pack& test, const Pack& value, Pack& out) noexcept {
-    out = test > Pack{} ? value : Pack{};
+template <class Lanes>
+void where_positive(const Lanes& test, const Lanes& value, Lanes& out) noexcept {
+    out = test > Lanes{} ? value : Lanes{};
 }
 #else
 struct Pack {
@@ -49,6 +61,8 @@ QUADSEG_PACK_OPERATOR(-)
 QUADSEG_PACK_OPERATOR(*)
 QUADSEG_PACK_OPERATOR(/)
 #undef QUADSEG_PACK_OPERATOR
+inline constexpr std::size_t parts = 1;
+using Part = Pack;
 inline Pack& operator+=(Pack& a, const Pack& b) noexcept {
     return a = a + b;
 }
@@ -76,9 +90,28 @@ inline Pair operator*(const Pair& a, const Pair& b) noexcept {
 }
 #endif
 
-inline void square_root(const Pack& a, Pack& out) noexcept {
-    for (std::size_t i = 0; i < lanes; ++i) out[i] = std::sqrt(a[i]);
+template <class Lanes>
+void square_root(const Lanes& a, Lanes& out) noexcept {
+    for (std::size_t i = 0; i < sizeof(Lanes) / sizeof(double); ++i) out[i] = std::sqrt(a[i]);
 }
+
+inline const Part& part_of(const Pack& pack, std::size_t part) noexcept {
+    return reinterpret_cast<const Part*>(&pack)[part];
+}
+inline Part& part_of(Pack& pack, std::size_t part) noexcept {
+    return reinterpret_cast<Part*>(&pack)[part];
+}
+
+/// One part of consecutive packs.
+class Parts {
+  public:
+    Parts(const Pack* packs, std::size_t part) noexcept : first_(&part_of(packs[0], part)) {}
+    const Part& operator[](std::size_t i) const noexcept { return first_[parts * i]; }
+
+  private:
+    const Part* first_;
+};
+
 /// The lanes' sum, in an order that does not depend on the compiler.
 inline double horizontal_sum(const Pack& a) noexcept {
     return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));

@@ -70,8 +70,8 @@ inline void translate_moments(T* m, const T& sx, const T& sy, const T& sz) noexc
 }
 
 /// corners: x y z of three corners. Writes all 35 entries of `m`.
-template <class T>
-inline void triangle_moments(const T* corners, const T& area, T* m) noexcept {
+template <class Corners, class T>
+inline void triangle_moments(const Corners& corners, const T& area, T* m) noexcept {
     const T gx = (corners[0] + corners[3] + corners[6]) * (1.0 / 3);
     const T gy = (corners[1] + corners[4] + corners[7]) * (1.0 / 3);
     const T gz = (corners[2] + corners[5] + corners[8]) * (1.0 / 3);
