@@ -20,6 +20,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double most_seconds = 10;
+/// Large meshes take up to 7 s on a quiet machine; a step of quadratic time takes minutes.
+constexpr double most_seconds_large = 40;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -70,7 +72,7 @@ const std::vector<NamedOptions>& many_options() {
 }
 
 /// Empty when the job ends as it must.
-std::string verdict(const MeshView& mesh, const Options& options) {
+std::string verdict(const MeshView& mesh, const Options& options, double limit = most_seconds) {
     const auto start = Clock::now();
     const std::clock_t cpu = std::clock();
     std::string wrong;
@@ -88,7 +90,7 @@ std::string verdict(const MeshView& mesh, const Options& options) {
     // The machine may be shared: what others take does not count.
     const double used = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
     const double seconds = std::min(seconds_since(start), used);
-    if (seconds > most_seconds) wrong += std::to_string(seconds) + " s; ";
+    if (seconds > limit) wrong += std::to_string(seconds) + " s; ";
     return wrong;
 }
 
@@ -202,7 +204,7 @@ TEST_P(Large, EndsSoon) {
     paper.preset = Preset::paper;
     paper.regions = 4;
     for (const Options& options : {Options{}, regions, paper}) {
-        EXPECT_EQ(verdict(GetParam().shape.view(), options), "")
+        EXPECT_EQ(verdict(GetParam().shape.view(), options, most_seconds_large), "")
             << to_string(options.preset) << ", " << options.regions << " regions";
     }
 }
