@@ -16,6 +16,10 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 /// Edges deviate from the direction of a ruling by no more than this share of the diagonal: the rounding of a file.
 constexpr double parallel_tolerance = 1e-6;
+/// Where more edges than these come only so near to it (of the diagonal, and of the edge's length), and they are a good
+/// share of all, rows of edges are off as the vertices are, and what misses the direction is no sign of a face's
+/// inside.
+constexpr double rough_tolerance = 1e-4, rough_share = 2e-3, least_rows = 0.05;
 /// A part turns about its direction at least so much (RMS).
 constexpr double least_turn = 1 * degree, least_turn_to_tilt = 4;
 /// Its facets tilt from it where rims are divided differently, and less than they fold: RMS by RMS. If they do not,
@@ -49,7 +53,7 @@ class Part {
         collect_edges(part, creases);
         if (tilt_ > most_tilt_to_fold * mean_fold() + flat_angle) return;
         find_direction();
-        if (!is_general_cylinder()) return;
+        if (rows_are_rough() || !is_general_cylinder()) return;
         find_rungs();
         find_columns();
         std::vector<std::uint8_t> border(rungs_, 1);
@@ -99,6 +103,19 @@ class Part {
         const auto parallel = [&](const Edge& e) { return is_parallel(e, direction); };
         return static_cast<std::size_t>(std::count_if(inner_.begin(), inner_.end(), parallel) +
                                         std::count_if(rims_.begin(), rims_.end(), parallel));
+    }
+
+    /// Vertices were moved since the part was divided: rows of edges miss the direction by more than a file rounds.
+    bool rows_are_rough() const {
+        std::size_t exact = 0, rough = 0;
+        for (const Edge& e : inner_) {
+            const Vec3 d = along(e);
+            const double length = dot(d, direction_), off = norm(d - direction_ * length);
+            if (off > rough_share * std::abs(length) || off > rough_tolerance * mesh_.frame.diagonal) continue;
+            if (std::abs(length) <= 10 * rough_tolerance * mesh_.frame.diagonal) continue;
+            ++(off <= tolerance_ ? exact : rough);
+        }
+        return rough > exact && static_cast<double>(rough) > least_rows * static_cast<double>(inner_.size());
     }
 
     double mean_fold() const {

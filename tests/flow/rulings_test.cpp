@@ -5,6 +5,7 @@
 #include "tests/partition/box.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace quadseg::test {
@@ -39,6 +40,16 @@ TEST(Rulings, EvenRowsAreCutAtKinks) {
     EXPECT_EQ(cut_at_rulings(wall(0.2, 12, 12)).parts, 2U);
     EXPECT_EQ(cut_at_rulings(wall(0, 12, 12)).parts, 1U);
     EXPECT_EQ(cut_at_rulings(wall(0, 12, 12)).ruled, 0U);  // it may have borders without a kink
+}
+
+TEST(Rulings, RowsThatWereMovedSayNothing) {
+    Shape moved = wall(0, 12, 24);  // a row at every vertex of the lower rim, and facets that tilt
+    EXPECT_EQ(cut_at_rulings(moved).ruled, moved.faces());
+    for (std::size_t i = 0; i < moved.positions.size(); i += 3)
+        moved.positions[i] += 3e-5 * std::sin(static_cast<double>(i));  // along the profile
+    const Cut cut = cut_at_rulings(moved);
+    EXPECT_EQ(cut.ruled, 0U);
+    EXPECT_EQ(cut.parts, 1U);
 }
 
 TEST(Rulings, OtherSurfacesHaveNone) {
