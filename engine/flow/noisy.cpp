@@ -3,6 +3,7 @@
 #include "flow/complete_merge.h"
 #include "flow/denoised_mesh.h"
 #include "flow/description_length.h"
+#include "flow/evidence_areas.h"
 #include "flow/filtered_normals.h"
 #include "partition/absorb.h"
 #include "partition/leaves.h"
@@ -91,8 +92,9 @@ class NoisyFlow {
     void grow() {
         const bool light = ratio_ < strong_from;
         const std::vector<Vec3> normals = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
-        denoised_ = denoised_mesh(mesh_, normals, control_);
-        passage_.mesh = &denoised_;
+        weighed_ = denoised_mesh(mesh_, normals, control_);
+        weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
+        passage_.mesh = &weighed_;
         partition::LeafOptions options;
         options.largest = light ? 24 : 48;
         options.smallest_coplanar = 0;
@@ -117,8 +119,8 @@ class NoisyFlow {
 
     /// Regions have been found on the denoised mesh; whether they are right, and where they end, the raw one says.
     void judge_by_raw_mesh() {
-        passage_.mesh = &mesh_;
-        denoised_ = {};
+        weighed_.positions = mesh_.positions;
+        weighed_.normals = mesh_.normals;
         if (!result_.partial) measure();
     }
 
@@ -229,7 +231,7 @@ class NoisyFlow {
     }
 
     const mesh::WorkMesh& mesh_;
-    mesh::WorkMesh denoised_;
+    mesh::WorkMesh weighed_;  ///< first denoised, then raw; its areas are evidence (flow/evidence_areas.h)
     const runtime::RunControl& control_;
     Passage passage_;
     double ratio_ = 0;
