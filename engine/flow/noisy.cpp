@@ -32,7 +32,7 @@ struct Prices {
                                 ///< would swallow small surfaces
     double relax_weight = 0.2;  ///< ω when faces move, of the ω of merging
 };
-constexpr Prices light_prices, strong_prices{3, 1.5, 0.3, 0.2, 0.33};
+constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.33};
 constexpr double strong_from = 0.25, all_strong = 0.35;  ///< σ/h
 
 Prices prices_at(double ratio) {
@@ -121,6 +121,8 @@ class NoisyFlow {
     void judge_by_raw_mesh() {
         weighed_.positions = mesh_.positions;
         weighed_.normals = mesh_.normals;
+        weighed_.areas = mesh_.areas;
+        weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
         if (!result_.partial) measure();
     }
 
