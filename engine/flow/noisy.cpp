@@ -31,16 +31,26 @@ struct Prices {
     double border_share = 0.3;  ///< what removed border is worth in a merge, of its price in relaxation: all of it
                                 ///< would swallow small surfaces
     double relax_weight = 0.2;  ///< ω when faces move, of the ω of merging
+    double weight = 0.75;       ///< ω of merging, in squared edges: less over-merges, more fragments
+    double border = 2;          ///< χ² that an edge of mean length is worth
 };
-constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.33};
-constexpr double strong_from = 0.25, all_strong = 0.35;  ///< σ/h
+/// Noise as large as edges is estimated too small (flow/noise.h), and most of E_n is it: both ω and prices rise.
+constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.33}, utmost_prices{12, 4, 0.3, 0.2, 0.33, 3, 1.5};
+constexpr double strong_from = 0.25, all_strong = 0.35, utmost_from = 0.52, all_utmost = 0.65;  ///< σ/h
 
 Prices prices_at(double ratio) {
-    const double s = std::clamp((ratio - strong_from) / (all_strong - strong_from), 0.0, 1.0);
+    const bool beyond = ratio > all_strong;
+    const double from = beyond ? utmost_from : strong_from, to = beyond ? all_utmost : all_strong;
+    const double s = std::clamp((ratio - from) / (to - from), 0.0, 1.0);
     const auto between = [s](double a, double b) { return a + (b - a) * s; };
-    const Prices &a = light_prices, &b = strong_prices;
-    return {between(a.moment, b.moment), between(a.complete, b.complete), between(a.region, b.region),
-            between(a.border_share, b.border_share), between(a.relax_weight, b.relax_weight)};
+    const Prices &a = beyond ? strong_prices : light_prices, &b = beyond ? utmost_prices : strong_prices;
+    return {between(a.moment, b.moment),
+            between(a.complete, b.complete),
+            between(a.region, b.region),
+            between(a.border_share, b.border_share),
+            between(a.relax_weight, b.relax_weight),
+            between(a.weight, b.weight),
+            between(a.border, b.border)};
 }
 
 constexpr int relax_steps = 2;
@@ -56,10 +66,10 @@ class NoisyFlow {
         ratio_ = noise.sigma / h;
         prices_ = prices_at(ratio_);
         evidence_ = noise.sigma * noise.sigma * 2 * mean_area / input.options.detail;
-        // For merging .5 to 1 h² are all fine, less over-merges, more fragments. Where faces move it is the likelihood
-        // of independent vertices that counts: h²/8, with which E_d + ω E_n of a triangle is ∝ Σ d² over its vertices.
-        weight_ = 0.75 * h * h;
-        border_price_ = 2 * evidence_ / h;  // an edge of length h is worth a χ² of 2
+        // Where faces move it is the likelihood of independent vertices that counts: h²/8, with which E_d + ω E_n of a
+        // triangle is ∝ Σ d² over its vertices.
+        weight_ = prices_.weight * h * h;
+        border_price_ = prices_.border * evidence_ / h;
         const double angle = misfit_angle(noise) * std::numbers::pi / 180;
         misfit_ = angle * angle * weight_ / input.options.detail;
         result_.noise = noise.sigma;
