@@ -29,6 +29,11 @@ template <class Lanes>
 void maximum(const Lanes& a, const Lanes& b, Lanes& out) noexcept {
     out = a > b ? a : b;
 }
+/// Adds one to the lanes of `count` where a < b.
+template <class Lanes>
+void count_below(const Lanes& a, const Lanes& b, Lanes& count) noexcept {
+    count += a < b ? Lanes{} + 1.0 : Lanes{};
+}
 /// value where test > 0, else 0.
 template <class Lanes>
 void where_positive(const Lanes& test, const Lanes& value, Lanes& out) noexcept {
@@ -68,6 +73,9 @@ inline Pack& operator+=(Pack& a, const Pack& b) noexcept {
 }
 inline void maximum(const Pack& a, const Pack& b, Pack& out) noexcept {
     for (std::size_t i = 0; i < lanes; ++i) out[i] = a[i] > b[i] ? a[i] : b[i];
+}
+inline void count_below(const Pack& a, const Pack& b, Pack& count) noexcept {
+    for (std::size_t i = 0; i < lanes; ++i) count[i] += a[i] < b[i] ? 1 : 0;
 }
 inline void where_positive(const Pack& test, const Pack& value, Pack& out) noexcept {
     for (std::size_t i = 0; i < lanes; ++i) out[i] = test[i] > 0 ? value[i] : 0;

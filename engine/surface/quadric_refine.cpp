@@ -1,6 +1,7 @@
 #include "surface/quadric_refine.h"
 
 #include "surface/levenberg_marquardt.h"
+#include "surface/median.h"
 #include "surface/small_system.h"
 
 #include <algorithm>
