@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -12,7 +11,7 @@ namespace quadseg::surface {
 
 namespace {
 
-using quadric::Pack, quadric::Part;
+using quadric::load_part, quadric::Pack, quadric::Part, quadric::part_size, quadric::store_part;
 
 constexpr double first_damping = 1e-4, least_damping = 1e-9, most_damping = 1e8;
 // In units of the points' RMS radius: below, distances are rounding.
@@ -40,20 +39,13 @@ struct NormalEquations {
     double g[K];
 };
 
-constexpr std::size_t part_size = sizeof(Part) / sizeof(double);
-
-Part load(const double* from) noexcept {
-    Part part;
-    std::memcpy(&part, from, sizeof part);
-    return part;
-}
-
 /// Some of the points in the frame's coordinates.
 struct LocalPart {
     Part n, g, b;
 
     [[gnu::always_inline]] LocalPart(const LocalPoints& p, const ShapeFrame& f, std::size_t first) {
-        const Part x = load(p.x + first) - f.p.x, y = load(p.y + first) - f.p.y, z = load(p.z + first) - f.p.z;
+        const Part x = load_part(p.x + first) - f.p.x, y = load_part(p.y + first) - f.p.y,
+                   z = load_part(p.z + first) - f.p.z;
         n = f.n.x * x + f.n.y * y + f.n.z * z;
         g = f.g.x * x + f.g.y * y + f.g.z * z;
         b = f.b.x * x + f.b.y * y + f.b.z * z;
@@ -73,7 +65,7 @@ class Problem {
             const LocalPart u(p_, f, first);
             Part d;
             shape.distance(u.n, u.g, u.b, d);
-            std::memcpy(out + first, &d, sizeof d);
+            store_part(out + first, d);
         }
     }
 
@@ -114,8 +106,9 @@ class Problem {
             for (int block = 0; block < 4 && i < p_.size(); ++block, i += lane_count) {
                 if (i + lane_count <= p_.size()) {
                     for (std::size_t l = 0; l < lane_count; l += part_size) {
-                        const Part d = load(distance + i + l), factors = load(product + l) * (1 + d * d * inverse);
-                        std::memcpy(product + l, &factors, sizeof factors);
+                        const Part d = load_part(distance + i + l),
+                                   factors = load_part(product + l) * (1 + d * d * inverse);
+                        store_part(product + l, factors);
                     }
                 } else {
                     for (std::size_t l = 0; i + l < p_.size(); ++l)
@@ -142,7 +135,7 @@ class Problem {
             const LocalPart u(p_, f, first);
             Part column[K], d;
             shape.derivatives(u.n, u.g, u.b, column, d);
-            const Part w = load(p_.weight + first) / (1 + d * d * inverse);
+            const Part w = load_part(p_.weight + first) / (1 + d * d * inverse);
             int pair = 0;
             const auto sum_up = [&](const Part& product) {
                 Part& sum = quadric::part_of(sums[pair++], part);
