@@ -156,7 +156,7 @@ ExactSurfaces find_exact_surfaces(const mesh::WorkMesh& mesh, const runtime::Run
     try {
         ExactSurfaces result = search_and_settle(scene, candidates, selection);
         result.tolerances = scene.tolerances;
-        result.facets = std::move(scene.facets);
+        result.facets = std::move(scene.ground->facets);
         return result;
     } catch (const runtime::Stopped&) {
         if (candidates.empty()) throw;

@@ -162,10 +162,12 @@ class FacetFinder {
     Facets find() {
         const std::vector<std::uint32_t> order = order_by_height(heights_);
         control_.check();
+        find_lonely();
         for (const std::uint32_t seed : order) {
             control_.check_often(polls_);
             if (result_.of_face[seed] < 0) grow(seed);
         }
+        lonely_ = {};
         begin_.push_back(static_cast<std::uint32_t>(members_.size()));
         control_.check();
         interior_ = interior_vertices(mesh_, result_.of_face);
@@ -179,16 +181,39 @@ class FacetFinder {
     }
 
   private:
+    Facet facet_of_seed(std::uint32_t f) const {
+        return {mesh_.normals[f], dot(mesh_.normals[f], mesh_.corner(f, 0)), 0, false};
+    }
+
+    /// Facets grow one after the other, since faces go to the first that reaches them; which faces would take none of
+    /// their neighbours, on fine curved meshes nearly all, is found by all threads before.
+    void find_lonely() {
+        lonely_.resize(mesh_.face_count());
+        runtime::parallel_blocks(lonely_.size(), block, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t f = begin; f < end; ++f) {
+                const Facet facet = facet_of_seed(static_cast<std::uint32_t>(f));
+                const auto joins = [&](std::int32_t g) {
+                    return g >= 0 && coplanar(static_cast<std::uint32_t>(g), facet);
+                };
+                const auto& neighbors = mesh_.neighbors[f];
+                const bool grows =
+                    squared_norm(facet.normal) > 0 && std::any_of(neighbors.begin(), neighbors.end(), joins);
+                lonely_[f] = grows ? 0 : 1;
+            }
+        });
+    }
+
     void grow(std::uint32_t seed) {
         const auto id = static_cast<std::int32_t>(result_.facet.size());
-        Facet facet{mesh_.normals[seed], dot(mesh_.normals[seed], mesh_.corner(seed, 0)), 0, false};
+        Facet facet = facet_of_seed(seed);
         PlaneSums sums(mesh_.corner(seed, 0));
         const std::size_t first = members_.size();
         begin_.push_back(static_cast<std::uint32_t>(first));
         members_.push_back(seed);
         result_.of_face[seed] = id;
         std::size_t next_fit = 4;
-        if (squared_norm(facet.normal) > 0) {
+        if (lonely_[seed] == 0) {
             for (std::size_t i = first; i < members_.size(); ++i) {
                 control_.check_often(polls_);
                 const std::uint32_t f = members_[i];
@@ -294,6 +319,7 @@ class FacetFinder {
     Facets result_;
     std::vector<std::uint32_t> members_;  ///< faces as they joined their facets
     std::vector<std::uint32_t> begin_;    ///< of each facet in members_
+    std::vector<std::uint8_t> lonely_;    ///< a flag a face: as a seed it stays alone
     std::vector<std::uint8_t> interior_;
     std::size_t polls_ = 0;
 };

@@ -294,10 +294,9 @@ std::optional<Surface> explain(const Scene& scene, std::span<const std::uint32_t
     return best;
 }
 
-Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
+Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options, Explanations& explanations,
                      const std::function<bool(std::uint32_t)>& usable, Marks& marks) {
     Finding finding;
-    const double tolerance = options.loose ? scene.tolerances.loose_fit : scene.tolerances.fit;
     // Well-shaped triangles come from dense meshes, on which breadth is right and a failure means free-form.
     const bool strips =
         scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[seed])) > 1 || is_long(scene, seed);
@@ -306,7 +305,7 @@ Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions
         const std::size_t available = patch.facet_end.size();
         if (available < 2) return std::nullopt;
         const auto explained_part = [&](std::size_t facets) {
-            return explain(scene, patch.up_to(facets), tolerance, strips, marks);
+            return explanations.of(std::span(patch.faces).first(patch.facet_end[facets - 1]), strips, marks);
         };
         const auto grown = [&](const Surface& surface, std::size_t facets) -> std::optional<Candidate> {
             Candidate candidate = grow(scene, surface, patch.up_to(facets), options.most_step, marks);

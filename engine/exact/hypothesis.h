@@ -1,6 +1,7 @@
 // Hypotheses: surfaces fitted to small patches, accepted only where the vertices lie on them.
 #pragma once
 
+#include "exact/explanations.h"
 #include "exact/grow.h"
 #include "exact/search.h"
 
@@ -57,8 +58,8 @@ struct Finding {
 };
 
 /// Tries discs and rows of facets around a seed; grows the first surface that holds. No candidate: no surface, or one
-/// that an honest look at its border refuses.
-Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options,
+/// that an honest look at its border refuses. `explanations`: of the search's tolerance.
+Finding find_surface(const Scene& scene, std::uint32_t seed, const SearchOptions& options, Explanations& explanations,
                      const std::function<bool(std::uint32_t)>& usable, Marks& marks);
 
 }  // namespace quadseg::exact

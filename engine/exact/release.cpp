@@ -2,6 +2,7 @@
 
 #include "exact/hypothesis.h"
 #include "math/symmetric3.h"
+#include "mesh/group_sums.h"
 #include "runtime/parallel.h"
 #include "surface/fit.h"
 
@@ -80,9 +81,9 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
             }
         }
     });
-    for (std::size_t f = 0; f < state.region.size(); ++f) {
-        if (state.region[f] >= 0) borders[static_cast<std::size_t>(state.region[f])].area += scene.mesh.areas[f];
-    }
+    std::vector<double> area(borders.size(), 0);
+    mesh::add_by_group(state.region, scene.mesh.areas, area);
+    for (std::size_t r = 0; r < borders.size(); ++r) borders[r].area = area[r];
     std::size_t polls = 0;
     for (const std::vector<Edge>& part : edges) {
         for (const auto& [f, k] : part) {

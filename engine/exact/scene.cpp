@@ -4,6 +4,7 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -56,19 +57,30 @@ void find_depths(Scene& scene) {
             if (!scene.in_sure_plane(f)) edges[begin / block].push_back(static_cast<std::uint32_t>(f));
         }
     });
-    std::vector<std::uint32_t> ring, next;
-    for (const std::vector<std::uint32_t>& part : edges) ring.insert(ring.end(), part.begin(), part.end());
-    for (std::uint16_t d = 1; !ring.empty(); d = static_cast<std::uint16_t>(std::min<int>(d + 1, unknown - 1))) {
+    // Ring by ring: who reaches a face first is chance, in which ring it lies is not.
+    constexpr std::size_t grain = 2048;
+    std::vector<std::uint32_t> ring;
+    for (std::uint16_t d = 1;; d = static_cast<std::uint16_t>(std::min<int>(d + 1, unknown - 1))) {
         scene.control.check();
-        next.clear();
-        for (const std::uint32_t f : ring) {
-            for (const std::int32_t g : mesh.neighbors[f]) {
-                if (g < 0 || scene.depth[static_cast<std::size_t>(g)] != unknown) continue;
-                scene.depth[static_cast<std::size_t>(g)] = d;
-                next.push_back(static_cast<std::uint32_t>(g));
+        ring.clear();
+        for (const std::vector<std::uint32_t>& part : edges) ring.insert(ring.end(), part.begin(), part.end());
+        if (ring.empty()) break;
+        edges.resize((ring.size() + grain - 1) / grain);
+        runtime::parallel_blocks(ring.size(), grain, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::uint32_t>& next = edges[begin / grain];
+            next.clear();
+            for (std::size_t i = begin; i < end; ++i) {
+                for (const std::int32_t neighbor : mesh.neighbors[ring[i]]) {
+                    if (neighbor < 0) continue;
+                    const auto g = static_cast<std::size_t>(neighbor);
+                    const std::atomic_ref<std::uint16_t> depth(scene.depth[g]);
+                    std::uint16_t before = depth.load(std::memory_order_relaxed);
+                    if (before != unknown || !depth.compare_exchange_strong(before, d, std::memory_order_relaxed))
+                        continue;
+                    next.push_back(static_cast<std::uint32_t>(g));
+                }
             }
-        }
-        ring.swap(next);
+        });
     }
 }
 
@@ -80,8 +92,16 @@ double dihedral(const mesh::WorkMesh& mesh, std::size_t f, std::size_t g) {
 }
 
 Scene with_creases(const Scene& scene, double degrees) {
-    Scene other = scene;
-    scene.control.check();
+    Scene other{scene.mesh,
+                scene.control,
+                scene.tolerances,
+                scene.ground,
+                scene.ground->facets,
+                scene.ground->heights,
+                {},
+                {},
+                0,
+                {}};
     other.creases = find_creases(scene.mesh, degrees);
     scene.control.check();
     find_charts(other);
@@ -91,11 +111,12 @@ Scene with_creases(const Scene& scene, double degrees) {
 }
 
 Scene build_scene(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
-    Scene scene{mesh, control, choose_tolerances(mesh), {}, {}, {}, {}, 0, {}};
+    const auto ground = std::make_shared<Scene::Ground>();
+    Scene scene{mesh, control, choose_tolerances(mesh), ground, ground->facets, ground->heights, {}, {}, 0, {}};
     control.check();
-    scene.heights = face_heights(mesh);
+    ground->heights = face_heights(mesh);
     control.check();
-    scene.facets = find_facets(mesh, scene.tolerances, scene.heights, control);
+    ground->facets = find_facets(mesh, scene.tolerances, scene.heights, control);
     control.check();
     scene.creases = find_creases(mesh, crease_degrees);
     control.check();

@@ -6,6 +6,7 @@
 #include "mesh/work_mesh.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace quadseg::exact {
@@ -14,8 +15,14 @@ struct Scene {
     const mesh::WorkMesh& mesh;
     const runtime::RunControl& control;
     Tolerances tolerances;
-    Facets facets;
-    std::vector<float> heights;         ///< smallest altitude of a face
+    /// What does not depend on creases: scenes that differ in these have it in common.
+    struct Ground {
+        std::vector<float> heights;
+        Facets facets;
+    };
+    std::shared_ptr<Ground> ground;
+    const Facets& facets;
+    const std::vector<float>& heights;  ///< smallest altitude of a face
     std::vector<std::uint8_t> creases;  ///< bit k: edge k is a border or sharper than the crease angle
     std::vector<std::int32_t> chart;    ///< smooth component of a face without sure planes; −1: in a sure plane
     std::size_t chart_count = 0;

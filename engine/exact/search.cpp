@@ -39,7 +39,8 @@ class ChartSearch {
           options_(options),
           covered_(covered),
           marks_(marks),
-          chart_(scene.chart[faces_.front()]) {
+          chart_(scene.chart[faces_.front()]),
+          explanations_(scene, options.loose ? scene.tolerances.loose_fit : scene.tolerances.fit) {
         std::stable_sort(faces_.begin(), faces_.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return scene_.depth[a] > scene_.depth[b]; });
     }
@@ -58,7 +59,7 @@ class ChartSearch {
                 if (options_.quadrics) {
                     found[i].candidate = find_quadric(scene_, seeds[i], usable, marks_.local());
                 } else {
-                    found[i] = find_surface(scene_, seeds[i], options_, usable, marks_.local());
+                    found[i] = find_surface(scene_, seeds[i], options_, explanations_, usable, marks_.local());
                 }
             });
             bool any = false;
@@ -140,7 +141,7 @@ class ChartSearch {
             if (covered_[seed] != no_seed || !is_in_regular_row(seed)) continue;
             scene_.control.check();
             const auto usable = [&](std::uint32_t f) { return scene_.chart[f] != chart_ || covered_[f] != explained; };
-            Finding found = find_surface(scene_, seed, options_, usable, marks_.local());
+            Finding found = find_surface(scene_, seed, options_, explanations_, usable, marks_.local());
             const bool curved = found.candidate && found.candidate->surface.type != SurfaceType::plane;
             if (curved && commit(std::move(*found.candidate))) {
                 failures = 0;
@@ -177,6 +178,7 @@ class ChartSearch {
     std::vector<std::uint8_t>& covered_;
     runtime::PerThread<Marks>& marks_;
     std::int32_t chart_;
+    Explanations explanations_;
     std::vector<Candidate> candidates_;
     std::size_t failures_ = 0, failures_before_quadric_ = failures_before_quadric, at_once_ = 1;
 };

@@ -1,6 +1,7 @@
 #include "exact/select.h"
 
 #include "exact/face_fit.h"
+#include "mesh/group_sums.h"
 #include "runtime/parallel.h"
 
 #include <algorithm>
@@ -146,9 +147,7 @@ class Selector {
 
     bool drop_losers() {
         std::vector<double> kept(candidates_.size(), 0);
-        for (std::size_t f = 0; f < result_.owner.size(); ++f) {
-            if (result_.owner[f] >= 0) kept[static_cast<std::size_t>(result_.owner[f])] += scene_.mesh.areas[f];
-        }
+        mesh::add_by_group(result_.owner, scene_.mesh.areas, kept);
         bool any = false;
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             if (!is_alive(c) || kept[c] >= least_share_kept * candidates_[c].area) continue;

@@ -3,11 +3,15 @@
 #include "exact/face_fit.h"
 #include "exact/grow.h"
 #include "runtime/parallel.h"
+#include "runtime/per_thread.h"
 #include "surface/fit.h"
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace quadseg::exact {
 
@@ -68,22 +72,41 @@ std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
     return borders;
 }
 
+/// Passes over the borders until no pair unites. What becomes of a pair depends on its two regions and their border
+/// alone: that of those as they are at a pass's start is found by all threads, and taken in order where none of the two
+/// has changed meanwhile; pairs that stay apart are asked again only after one has changed.
 class Uniter {
   public:
     Uniter(const Scene& scene, double largest_step, Explained& state)
         : scene_(scene), largest_step_(largest_step), state_(state), faces_(faces_of_regions(state)) {
         parent_.resize(state.surface.size());
         std::iota(parent_.begin(), parent_.end(), 0);
+        changes_.resize(state.surface.size(), 0);
     }
 
     void run() {
         for (bool any = true; any;) {
             any = false;
             scene_.control.check();
-            for (const Border& border : borders_of(scene_, state_)) {
+            const std::vector<Border> borders = borders_of(scene_, state_);
+            std::vector<Verdict> verdicts(borders.size());
+            runtime::parallel_for(borders.size(), 1, [&](std::size_t i) {
                 scene_.control.check();
-                const std::int32_t a = find(border.a), b = find(border.b);
-                if (a != b && try_unite(a, b, border)) any = true;
+                verdicts[i] = judge(borders[i]);
+            });
+            for (std::size_t i = 0; i < borders.size(); ++i) {
+                scene_.control.check();
+                const Border border{find(borders[i].a), find(borders[i].b), borders[i].bend};
+                if (border.a == border.b) continue;
+                const bool valid =
+                    border.a == borders[i].a && border.b == borders[i].b && verdicts[i].changes == changes_of(border);
+                if (!valid) verdicts[i] = judge(border);
+                if (verdicts[i].surface) {
+                    any = true;
+                    join(border, *verdicts[i].surface);
+                } else {
+                    apart_[{border.a, border.b}] = {verdicts[i].changes, border.bend};
+                }
             }
             for (std::int32_t& r : state_.region) {
                 if (r >= 0) r = find(r);
@@ -92,39 +115,62 @@ class Uniter {
     }
 
   private:
-    std::int32_t find(std::int32_t r) {
+    using Changes = std::pair<std::uint32_t, std::uint32_t>;
+    struct Verdict {
+        std::unique_ptr<const Surface> surface;  ///< of both as one; none: they stay apart
+        Changes changes;                         ///< of the two regions, up to when it was found
+    };
+    struct Apart {
+        Changes changes;
+        double bend;
+        bool operator==(const Apart&) const = default;
+    };
+
+    std::int32_t find(std::int32_t r) const {
         while (parent_[static_cast<std::size_t>(r)] != r) r = parent_[static_cast<std::size_t>(r)];
         return r;
     }
-    std::vector<std::uint32_t>& faces(std::int32_t r) { return faces_[static_cast<std::size_t>(r)]; }
-    Surface& surface(std::int32_t r) { return state_.surface[static_cast<std::size_t>(r)]; }
+    const std::vector<std::uint32_t>& faces(std::int32_t r) const { return faces_[static_cast<std::size_t>(r)]; }
+    const Surface& surface(std::int32_t r) const { return state_.surface[static_cast<std::size_t>(r)]; }
+    Changes changes_of(const Border& border) const {
+        return {changes_[static_cast<std::size_t>(border.a)], changes_[static_cast<std::size_t>(border.b)]};
+    }
+    /// The larger region first.
+    std::pair<std::int32_t, std::int32_t> by_size(const Border& border) const {
+        if (faces(border.a).size() < faces(border.b).size()) return {border.b, border.a};
+        return {border.a, border.b};
+    }
 
-    bool try_unite(std::int32_t a, std::int32_t b, const Border& border) {
-        if (faces(a).size() < faces(b).size()) std::swap(a, b);
+    Verdict judge(const Border& border) {
+        const Changes changes = changes_of(border);
+        const auto apart = apart_.find({border.a, border.b});
+        if (apart != apart_.end() && apart->second == Apart{changes, border.bend}) return {nullptr, changes};
+        const std::optional<Surface> common = common_surface(border);
+        return {common ? std::make_unique<const Surface>(*common) : nullptr, changes};
+    }
+
+    std::optional<Surface> common_surface(const Border& border) {
+        const auto [a, b] = by_size(border);
         const double tolerance = std::max(3e-6 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision);
-        if (lies_on(b, surface(a), tolerance, 0.9)) {
-            join(a, b, surface(a));
-            return true;
-        }
+        if (lies_on(b, surface(a), tolerance, 0.9)) return surface(a);
         // Small pieces say too little alone; together they may fit one surface, if the border between them is smooth.
-        if (faces(b).size() > 64 || border.bend > std::max(largest_step_, 0.1)) return false;
+        if (faces(b).size() > 64 || border.bend > std::max(largest_step_, 0.1)) return std::nullopt;
         const Surface* curved = &surface(a);
-        if (curved->type == SurfaceType::plane) return false;
+        if (curved->type == SurfaceType::plane) return std::nullopt;
         std::vector<std::uint32_t> both = faces(a);
         both.insert(both.end(), faces(b).begin(), faces(b).end());
-        const std::vector<Vec3> points = vertices_of(scene_, both, sample, marks_);
+        const std::vector<Vec3> points = vertices_of(scene_, both, sample, marks_.local());
         const surface::SurfaceFit fit = surface::refine(*curved, {points, {}, {}}, {});
-        if (!fit.ok || fit.q90 > scene_.tolerances.loose_fit || fit.max > scene_.tolerances.trim) return false;
+        if (!fit.ok || fit.q90 > scene_.tolerances.loose_fit || fit.max > scene_.tolerances.trim) return std::nullopt;
         if (!lies_on(a, fit.surface, scene_.tolerances.trim, 1) ||
             !lies_on(b, fit.surface, scene_.tolerances.trim, 1)) {
-            return false;
+            return std::nullopt;
         }
-        join(a, b, fit.surface);
-        return true;
+        return fit.surface;
     }
 
     /// `share` of the vertices within the tolerance, and nearly all of the area with a fitting normal.
-    bool lies_on(std::int32_t region, const Surface& s, double tolerance, double share) {
+    bool lies_on(std::int32_t region, const Surface& s, double tolerance, double share) const {
         const FaceFitter fitter(scene_, s);
         const std::vector<std::uint32_t>& list = faces(region);
         const std::size_t stride = std::max<std::size_t>(1, list.size() / sample);
@@ -143,11 +189,14 @@ class Uniter {
         return true;
     }
 
-    void join(std::int32_t a, std::int32_t b, const Surface& s) {
-        state_.surface[static_cast<std::size_t>(a)] = s;
-        faces(a).insert(faces(a).end(), faces(b).begin(), faces(b).end());
-        faces(b).clear();
-        parent_[static_cast<std::size_t>(b)] = a;
+    void join(const Border& border, const Surface& s) {
+        const auto [larger, smaller] = by_size(border);
+        const auto a = static_cast<std::size_t>(larger), b = static_cast<std::size_t>(smaller);
+        state_.surface[a] = s;
+        faces_[a].insert(faces_[a].end(), faces_[b].begin(), faces_[b].end());
+        faces_[b].clear();
+        parent_[b] = larger;
+        ++changes_[a];
     }
 
     const Scene& scene_;
@@ -155,7 +204,9 @@ class Uniter {
     Explained& state_;
     std::vector<std::vector<std::uint32_t>> faces_;
     std::vector<std::int32_t> parent_;
-    Marks marks_;
+    std::vector<std::uint32_t> changes_;  ///< a region: how often it took another one
+    std::map<std::pair<std::int32_t, std::int32_t>, Apart> apart_;
+    runtime::PerThread<Marks> marks_;
 };
 
 /// The neighbouring region with the longest common border, its share of the perimeter.

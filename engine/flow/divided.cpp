@@ -5,6 +5,7 @@
 #include "exact/tolerances.h"
 #include "flow/facet_crumbs.h"
 #include "flow/simplified_mesh.h"
+#include "runtime/parallel.h"
 #include "simplify/undivide.h"
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace quadseg::flow {
 
@@ -102,24 +105,31 @@ class DividedSearch {
         };
         // Facets with two different ones beside them, all of more than a triangle …
         std::vector<Ends> beside(facets_.count());
-        std::size_t polls = 0;
-        for (std::size_t f = 0; f < labels_.size(); ++f) {
-            control_.check_often(polls);
-            const std::int32_t own = facets_.of_face[f];
-            if (!is_loose(f) || is_triangle(own)) continue;
-            for (const std::int32_t g : mesh_.neighbors[f]) {
-                if (g == mesh::no_face || !is_loose(static_cast<std::size_t>(g))) continue;
-                const std::int32_t other = facets_.of_face[static_cast<std::size_t>(g)];
-                if (own == other || is_triangle(other) || !folds_gently(f, static_cast<std::size_t>(g)) ||
-                    !folds_clearly(f, static_cast<std::size_t>(g)))
-                    continue;
-                beside[static_cast<std::size_t>(own)].add(other);
+        constexpr std::size_t block = 16384;
+        std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> pairs((labels_.size() + block - 1) / block);
+        runtime::parallel_blocks(labels_.size(), block, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t f = begin; f < end; ++f) {
+                const std::int32_t own = facets_.of_face[f];
+                if (!is_loose(f) || is_triangle(own)) continue;
+                for (const std::int32_t g : mesh_.neighbors[f]) {
+                    if (g == mesh::no_face || !is_loose(static_cast<std::size_t>(g))) continue;
+                    const std::int32_t other = facets_.of_face[static_cast<std::size_t>(g)];
+                    if (own == other || is_triangle(other) || !folds_gently(f, static_cast<std::size_t>(g)) ||
+                        !folds_clearly(f, static_cast<std::size_t>(g)))
+                        continue;
+                    pairs[begin / block].emplace_back(own, other);
+                }
             }
+        });
+        for (const auto& part : pairs) {
+            for (const auto& [own, other] : part) beside[static_cast<std::size_t>(own)].add(other);
         }
         const auto in_row = [&](const Ends& ends) { return ends.first == many || ends.second != none; };
         if (std::none_of(beside.begin(), beside.end(), in_row)) return {};
         // … are a row where they have vertices that are no corners of theirs.
         std::vector<Ends> at_vertex(mesh_.vertex_count());
+        std::size_t polls = 0;
         for (std::size_t f = 0; f < labels_.size(); ++f) {
             control_.check_often(polls);
             for (std::size_t k = 0; k < 3; ++k) {

@@ -1,7 +1,9 @@
 #include "flow/faceted.h"
 
 #include "mesh/connected.h"
+#include "mesh/group_sums.h"
 #include "partition/face_choice.h"
+#include "runtime/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -82,16 +84,31 @@ class FacetedParts {
         return surfaces_[static_cast<std::size_t>(region)].type == SurfaceType::plane;
     }
 
-    /// visit(face, edge, face across or −1) for every edge at which a region ends.
+    /// visit(face, edge, face across or −1) for every edge at which a group of faces ends, in the order of the faces.
+    /// All threads look for those that have such edges: they are few.
     template <class Visit>
-    void for_borders(const Visit& visit) const {
+    void for_borders(const std::vector<std::int32_t>& group, const Visit& visit) const {
+        constexpr std::size_t block = 16384;
+        const auto ends = [&](std::size_t f, std::int32_t g) {
+            return g < 0 || group[static_cast<std::size_t>(g)] != group[f];
+        };
+        std::vector<std::vector<std::uint32_t>> faces((group.size() + block - 1) / block);
+        runtime::parallel_blocks(group.size(), block, [&](std::size_t begin, std::size_t end) {
+            control_.check();
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto& neighbors = mesh_.neighbors[f];
+                if (group[f] >= 0 && (ends(f, neighbors[0]) || ends(f, neighbors[1]) || ends(f, neighbors[2])))
+                    faces[begin / block].push_back(static_cast<std::uint32_t>(f));
+            }
+        });
         std::size_t polls = 0;
-        for (std::size_t f = 0; f < explained_.size(); ++f) {
-            control_.check_often(polls);
-            if (explained_[f] < 0) continue;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t g = mesh_.neighbors[f][k];
-                if (g < 0 || explained_[static_cast<std::size_t>(g)] != explained_[f]) visit(f, k, g);
+        for (const std::vector<std::uint32_t>& part : faces) {
+            for (const std::uint32_t f : part) {
+                control_.check_often(polls);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::int32_t g = mesh_.neighbors[f][k];
+                    if (ends(f, g)) visit(f, k, g);
+                }
             }
         }
     }
@@ -106,15 +123,10 @@ class FacetedParts {
             },
             [&] { control_.check(); }, facet_);
         std::vector<double> area(facets, 0), perimeter(facets, 0);
-        for (std::size_t f = 0; f < facet_.size(); ++f) {
-            const auto own = static_cast<std::size_t>(facet_[f]);
-            area[own] += mesh_.areas[f];
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t g = mesh_.neighbors[f][k];
-                if (g < 0 || facet_[static_cast<std::size_t>(g)] != facet_[f])
-                    perimeter[own] += partition::edge_length(mesh_, f, k);
-            }
-        }
+        mesh::add_by_group(facet_, mesh_.areas, area);
+        for_borders(facet_, [&](std::size_t f, std::size_t k, std::int32_t) {
+            perimeter[static_cast<std::size_t>(facet_[f])] += partition::edge_length(mesh_, f, k);
+        });
         width_.resize(facets);
         for (std::size_t i = 0; i < facets; ++i) width_[i] = perimeter[i] > 0 ? 2 * area[i] / perimeter[i] : 0;
     }
@@ -124,7 +136,7 @@ class FacetedParts {
     /// A flag a region: planes that pass gently into planes and unexplained faces along most of their border.
     std::vector<std::uint8_t> find_strips() const {
         std::vector<double> length(surfaces_.size(), 0), gentle(surfaces_.size(), 0), wider(surfaces_.size(), 0);
-        for_borders([&](std::size_t f, std::size_t k, std::int32_t g) {
+        for_borders(explained_, [&](std::size_t f, std::size_t k, std::int32_t g) {
             const auto r = static_cast<std::size_t>(explained_[f]);
             const double edge = partition::edge_length(mesh_, f, k);
             length[r] += edge;
@@ -152,9 +164,7 @@ class FacetedParts {
             [&](std::size_t f, std::size_t k, std::size_t) { return !is_crease(creases_, f, k); },
             [&] { control_.check(); }, part_);
         part_area_.assign(parts, 0);
-        for (std::size_t f = 0; f < part_.size(); ++f) {
-            if (part_[f] >= 0) part_area_[static_cast<std::size_t>(part_[f])] += mesh_.areas[f];
-        }
+        mesh::add_by_group(part_, mesh_.areas, part_area_);
     }
 
     /// Strips that are no small share of their part are planes that someone meant. True: there were some.
@@ -212,10 +222,10 @@ class FacetedParts {
 
     bool release_regions() {
         std::vector<Border> borders(surfaces_.size());
-        for (std::size_t f = 0; f < explained_.size(); ++f) {
-            if (explained_[f] >= 0) borders[static_cast<std::size_t>(explained_[f])].area += mesh_.areas[f];
-        }
-        for_borders([&](std::size_t f, std::size_t k, std::int32_t g) {
+        std::vector<double> areas(surfaces_.size(), 0);
+        mesh::add_by_group(explained_, mesh_.areas, areas);
+        for (std::size_t r = 0; r < borders.size(); ++r) borders[r].area = areas[r];
+        for_borders(explained_, [&](std::size_t f, std::size_t k, std::int32_t g) {
             Border& border = borders[static_cast<std::size_t>(explained_[f])];
             const double edge = partition::edge_length(mesh_, f, k);
             const bool smooth = g >= 0 && !is_crease(creases_, f, k);

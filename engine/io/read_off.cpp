@@ -102,7 +102,7 @@ bool read_triangle(const char* p, std::size_t vertices, FaceBlock& block) {
         if (!take_integer(p, index) || index < 0 || static_cast<std::size_t>(index) >= vertices) return false;
         corner = static_cast<std::uint32_t>(index);
     }
-    block.corners.insert(block.corners.end(), corners.begin(), corners.end());
+    for (const std::uint32_t corner : corners) block.corners.push_back(corner);
     block.close_face(3);
     return true;
 }

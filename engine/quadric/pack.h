@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 namespace quadseg::quadric {
 
@@ -28,6 +29,15 @@ using Part = double __attribute__((vector_size(lanes / parts * sizeof(double)), 
 template <class Lanes>
 void maximum(const Lanes& a, const Lanes& b, Lanes& out) noexcept {
     out = a > b ? a : b;
+}
+template <class Lanes>
+void minimum(const Lanes& a, const Lanes& b, Lanes& out) noexcept {
+    out = a < b ? a : b;
+}
+/// Adds one to the lanes of `count` where a < b.
+template <class Lanes>
+void count_below(const Lanes& a, const Lanes& b, Lanes& count) noexcept {
+    count += a < b ? Lanes{} + 1.0 : Lanes{};
 }
 /// value where test > 0, else 0.
 template <class Lanes>
@@ -69,6 +79,12 @@ inline Pack& operator+=(Pack& a, const Pack& b) noexcept {
 inline void maximum(const Pack& a, const Pack& b, Pack& out) noexcept {
     for (std::size_t i = 0; i < lanes; ++i) out[i] = a[i] > b[i] ? a[i] : b[i];
 }
+inline void minimum(const Pack& a, const Pack& b, Pack& out) noexcept {
+    for (std::size_t i = 0; i < lanes; ++i) out[i] = a[i] < b[i] ? a[i] : b[i];
+}
+inline void count_below(const Pack& a, const Pack& b, Pack& count) noexcept {
+    for (std::size_t i = 0; i < lanes; ++i) count[i] += a[i] < b[i] ? 1 : 0;
+}
 inline void where_positive(const Pack& test, const Pack& value, Pack& out) noexcept {
     for (std::size_t i = 0; i < lanes; ++i) out[i] = test[i] > 0 ? value[i] : 0;
 }
@@ -100,6 +116,18 @@ inline const Part& part_of(const Pack& pack, std::size_t part) noexcept {
 }
 inline Part& part_of(Pack& pack, std::size_t part) noexcept {
     return reinterpret_cast<Part*>(&pack)[part];
+}
+
+inline constexpr std::size_t part_size = lanes / parts;
+
+/// Of consecutive doubles, wherever they lie.
+inline Part load_part(const double* from) noexcept {
+    Part part;
+    std::memcpy(&part, from, sizeof part);
+    return part;
+}
+inline void store_part(double* to, const Part& part) noexcept {
+    std::memcpy(to, &part, sizeof part);
 }
 
 /// One part of consecutive packs.

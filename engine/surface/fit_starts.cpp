@@ -124,8 +124,12 @@ Vec3 anchor(const Surface& s, const LocalPoints& p) {
         if (s.type == SurfaceType::cone && rho < 0.5 * mean_rho) cost += 10;
         if (s.type == SurfaceType::torus) {
             // Where the normal is parallel to the axis the frame is singular.
-            const double w = rho - s.radius, length = std::hypot(w, z), cosine = length > 0 ? std::abs(w) / length : 0;
-            cost += cosine < 0.5 ? 10 * (1.5 - cosine) : 0;
+            const double w = rho - s.radius;
+            // Clearly less than 60 degrees need no root.
+            if (!(z * z < 2.9 * (w * w))) {
+                const double length = std::hypot(w, z), cosine = length > 0 ? std::abs(w) / length : 0;
+                cost += cosine < 0.5 ? 10 * (1.5 - cosine) : 0;
+            }
             if (!(rho > 0)) cost += 100;
         }
         if (cost < best) {

@@ -1,14 +1,17 @@
 #include "surface/levenberg_marquardt.h"
 
+#include "surface/median.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <type_traits>
 
 namespace quadseg::surface {
 
 namespace {
+
+using quadric::load_part, quadric::Pack, quadric::Part, quadric::part_size, quadric::store_part;
 
 constexpr double first_damping = 1e-4, least_damping = 1e-9, most_damping = 1e8;
 // In units of the points' RMS radius: below, distances are rounding.
@@ -19,8 +22,6 @@ constexpr double indistinguishable = 1e-13;
 // Mean squared derivative of the distance below which a parameter has no effect at all (the axis of a torus that is a
 // sphere).
 constexpr double no_effect = 1e-15;
-// Up to so many values the median is found by counting.
-constexpr std::size_t few = 48;
 // Steps in a row that leave the median where it is, after which it is not going to fall much.
 constexpr int idle_steps = 3;
 // Where the only question is whether the points come close: a step that promises less than this share of the cost leads
@@ -31,10 +32,24 @@ constexpr double most_of_promise = 1.5;
 // In scales, three medians each: more than a smooth misfit spreads.
 constexpr double outlying = 1.5;
 
+/// A row a pack, zero beyond K.
 template <int K>
 struct NormalEquations {
-    double h[K][K];
+    Pack h[K];
     double g[K];
+};
+
+/// Some of the points in the frame's coordinates.
+struct LocalPart {
+    Part n, g, b;
+
+    [[gnu::always_inline]] LocalPart(const LocalPoints& p, const ShapeFrame& f, std::size_t first) {
+        const Part x = load_part(p.x + first) - f.p.x, y = load_part(p.y + first) - f.p.y,
+                   z = load_part(p.z + first) - f.p.z;
+        n = f.n.x * x + f.n.y * y + f.n.z * z;
+        g = f.g.x * x + f.g.y * y + f.g.z * z;
+        b = f.b.x * x + f.b.y * y + f.b.z * z;
+    }
 };
 
 template <SurfaceType type>
@@ -45,17 +60,24 @@ class Problem {
     Problem(LocalPoints& points, const FitOptions& options)
         : p_(points), robust_(options.robust), least_scale_(options.minimum_scale / points.extent) {}
 
-    void distances(const ShapeFrame& f, double* out) const {
-        const ShapeDistance<type> shape(f);
-        for (std::size_t i = 0; i < p_.padded(); ++i) {
-            const double x = p_.x[i] - f.p.x, y = p_.y[i] - f.p.y, z = p_.z[i] - f.p.z;
-            out[i] = shape.distance(f.n.x * x + f.n.y * y + f.n.z * z, f.g.x * x + f.g.y * y + f.g.z * z,
-                                    f.b.x * x + f.b.y * y + f.b.z * z);
+    void distances(const ShapeFrame& f, const ShapeDistance<type>& shape, double* out) const {
+        for (std::size_t first = 0; first < p_.padded(); first += part_size) {
+            const LocalPart u(p_, f, first);
+            Part d;
+            shape.distance(u.n, u.g, u.b, d);
+            store_part(out + first, d);
         }
     }
 
     double scale_of(const double* distance) const {
         return std::max(3 * median_magnitude(distance, p_.size(), p_.sorted), std::max(least_scale_, rounding));
+    }
+
+    /// scale_of(distance) <= bound.
+    bool is_scale_below(double bound, const double* distance) const {
+        std::size_t below = 0;
+        for (std::size_t i = 0; i < p_.size(); ++i) below += 3 * std::abs(distance[i]) <= bound ? 1 : 0;
+        return below > p_.size() / 2 && least_scale_ <= bound;
     }
 
     /// Σ w ρ(d): d²/2, or Cauchy's σ²/2 log(1 + (d/σ)²).
@@ -83,8 +105,11 @@ class Problem {
             // Not more factors than leave the product of the lanes' within the range of doubles.
             for (int block = 0; block < 4 && i < p_.size(); ++block, i += lane_count) {
                 if (i + lane_count <= p_.size()) {
-                    for (std::size_t l = 0; l < lane_count; ++l)
-                        product[l] *= 1 + distance[i + l] * distance[i + l] * inverse;
+                    for (std::size_t l = 0; l < lane_count; l += part_size) {
+                        const Part d = load_part(distance + i + l),
+                                   factors = load_part(product + l) * (1 + d * d * inverse);
+                        store_part(product + l, factors);
+                    }
                 } else {
                     for (std::size_t l = 0; i + l < p_.size(); ++l)
                         product[l] *= 1 + distance[i + l] * distance[i + l] * inverse;
@@ -101,50 +126,50 @@ class Problem {
         return sum;
     }
 
-    NormalEquations<K> normal_equations(const ShapeFrame& f, double scale) const {
+    NormalEquations<K> normal_equations(const ShapeFrame& f, const ShapeDistance<type>& shape, double scale) const {
         constexpr int pairs = K * (K + 1) / 2 + K;
-        alignas(64) double sums[pairs][lane_count];
-        const ShapeDistance<type> shape(f);
+        Pack sums[pairs];
         const double inverse = robust_ ? 1 / (scale * scale) : 0;
         // The first points set the sums: for a few, zeroes would cost as much as they do.
-        const auto add = [&](std::size_t first, auto is_first) {
-            alignas(64) double column[K][lane_count], weighted[K][lane_count], d[lane_count], w[lane_count];
-            for (std::size_t l = 0; l < lane_count; ++l) {
-                const double x = p_.x[first + l] - f.p.x, y = p_.y[first + l] - f.p.y, z = p_.z[first + l] - f.p.z;
-                d[l] = shape.derivatives(f.n.x * x + f.n.y * y + f.n.z * z, f.g.x * x + f.g.y * y + f.g.z * z,
-                                         f.b.x * x + f.b.y * y + f.b.z * z,
-                                         [&](int i) -> double& { return column[i][l]; });
-                w[l] = p_.weight[first + l] / (1 + d[l] * d[l] * inverse);
-            }
+        const auto add = [&](std::size_t first, std::size_t part, auto is_first) {
+            const LocalPart u(p_, f, first);
+            Part column[K], d;
+            shape.derivatives(u.n, u.g, u.b, column, d);
+            const Part w = load_part(p_.weight + first) / (1 + d * d * inverse);
             int pair = 0;
-            const auto sum_up = [&](const double* a, const double* b) {
-                double* const sum = sums[pair++];
-                for (std::size_t l = 0; l < lane_count; ++l) {
-                    if constexpr (is_first.value) {
-                        sum[l] = a[l] * b[l];
-                    } else {
-                        sum[l] += a[l] * b[l];
-                    }
+            const auto sum_up = [&](const Part& product) {
+                Part& sum = quadric::part_of(sums[pair++], part);
+                if constexpr (is_first.value) {
+                    sum = product;
+                } else {
+                    sum += product;
                 }
             };
             for (int i = 0; i < K; ++i) {
-                for (std::size_t l = 0; l < lane_count; ++l) weighted[i][l] = w[l] * column[i][l];
-                for (int j = 0; j <= i; ++j) sum_up(weighted[i], column[j]);
-                sum_up(weighted[i], d);
+                const Part weighted = w * column[i];
+                for (int j = 0; j <= i; ++j) sum_up(weighted * column[j]);
+                sum_up(weighted * d);
             }
         };
-        add(0, std::true_type{});
-        for (std::size_t first = lane_count; first < p_.padded(); first += lane_count) add(first, std::false_type{});
-        NormalEquations<K> e;
+        for (std::size_t part = 0; part < quadric::parts; ++part) add(part * part_size, part, std::true_type{});
+        for (std::size_t first = lane_count; first < p_.padded(); first += lane_count) {
+            for (std::size_t part = 0; part < quadric::parts; ++part)
+                add(first + part * part_size, part, std::false_type{});
+        }
+        NormalEquations<K> e{};
         int pair = 0;
         auto total = [&] {
             double sum = 0;
-            for (double v : sums[pair]) sum += v;
+            for (std::size_t l = 0; l < lane_count; ++l) sum += sums[pair][l];
             ++pair;
             return sum;
         };
         for (int i = 0; i < K; ++i) {
-            for (int j = 0; j <= i; ++j) e.h[i][j] = e.h[j][i] = total();
+            for (int j = 0; j <= i; ++j) {
+                const double sum = total();
+                e.h[i][std::size_t(j)] = sum;
+                e.h[j][std::size_t(i)] = sum;
+            }
             e.g[i] = total();
         }
         return e;
@@ -153,39 +178,36 @@ class Problem {
     /// Cholesky of the system scaled to a unit diagonal plus damping. False: not positive definite. smallest: least
     /// squared pivot.
     static bool solve(const NormalEquations<K>& e, double damping, double* step, double& smallest) {
-        // Rows of the upper factor, padded to whole lanes: what is left of a column below a pivot is one vector.
-        alignas(64) double u[K][lane_count] = {};
-        double s[K], v[K];
+        // A row of the upper factor and, in its last lane, the right side: what is left of it is one value.
+        constexpr std::size_t right = lane_count - 1;
+        static_assert(K <= right);
+        Pack u[K], s{};
         smallest = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < K; ++i) {
+        for (std::size_t i = 0; i < K; ++i) {
             s[i] = e.h[i][i] > 0 ? 1 / std::sqrt(e.h[i][i]) : 0;
             if (!std::isfinite(s[i])) return false;
         }
-        for (int i = 0; i < K; ++i) {
-            for (int j = 0; j < K; ++j) u[i][j] = e.h[i][j] * s[j] * s[i];
+        for (std::size_t i = 0; i < K; ++i) {
+            u[i] = e.h[i] * s * s[i];
             u[i][i] = s[i] == 0 ? 0 : 1 + damping;
-            v[i] = -e.g[i] * s[i];
+            u[i][right] = -e.g[i] * s[i];
         }
         double root[K];
-        for (int k = 0; k < K; ++k) {
+        for (std::size_t k = 0; k < K; ++k) {
             const double pivot = u[k][k];
             smallest = std::min(smallest, pivot);
             if (!(pivot > 1e-15)) return false;
             root[k] = std::sqrt(pivot);
-            for (std::size_t l = 0; l < lane_count; ++l) u[k][l] /= root[k];
-            v[k] /= root[k];
-            for (int i = k + 1; i < K; ++i) {
-                const double factor = u[k][i];
-                for (std::size_t l = 0; l < lane_count; ++l) u[i][l] -= factor * u[k][l];
-                v[i] -= factor * v[k];
-            }
+            u[k] = u[k] / root[k];
+            for (std::size_t i = k + 1; i < K; ++i) u[i] = u[i] - u[k][i] * u[k];
         }
-        for (int i = K - 1; i >= 0; --i) {
-            double sum = v[i];
-            for (int k = i + 1; k < K; ++k) sum -= u[i][k] * v[k];
+        double v[K];
+        for (std::size_t i = K; i-- > 0;) {
+            double sum = u[i][right];
+            for (std::size_t k = i + 1; k < K; ++k) sum -= u[i][k] * v[k];
             v[i] = sum / root[i];
         }
-        for (int i = 0; i < K; ++i) step[i] = v[i] * s[i];
+        for (std::size_t i = 0; i < K; ++i) step[i] = v[i] * s[i];
         return true;
     }
 
@@ -212,8 +234,12 @@ class Problem {
     Adjustment run(const ShapeFrame& start, const FitOptions& options, const Closeness* goal) {
         Adjustment best;
         best.frame = start;
-        distances(start, p_.distance);
-        double scale = scale_of(p_.distance), current = cost(p_.distance, scale), damping = first_damping;
+        ShapeDistance<type> shape(start);
+        distances(start, shape, p_.distance);
+        // Least squares that have no goal need no scale, only whether rounding is all that there is.
+        const bool scaled = robust_ || goal;
+        const bool exact_start = !scaled && is_scale_below(100 * rounding, p_.distance);
+        double scale = scaled ? scale_of(p_.distance) : 0, current = cost(p_.distance, scale), damping = first_damping;
         best.finite = std::isfinite(current);
         if (!best.finite) return best;
         best.close = goal && is_close(p_.distance, *goal);
@@ -227,7 +253,7 @@ class Problem {
         NormalEquations<K> e{};
         bool falling = false;  // the last step still paid a lot
         for (int iteration = 0; iteration < (falling ? 2 : 1) * options.iterations; ++iteration) {
-            if (!fresh) e = normal_equations(best.frame, scale);
+            if (!fresh) e = normal_equations(best.frame, shape, scale);
             fresh = true;
             double step[K];
             if (!solve(e, damping, step, smallest)) {
@@ -241,16 +267,18 @@ class Problem {
             if (accepted > 0 && current - most_of_promise * promise(e, step) > most_cost) return useless(best);
             limit(step);
             const ShapeFrame next = stepped(best.frame, step);
-            distances(next, p_.trial);
+            const ShapeDistance<type> shape_there(next);
+            distances(next, shape_there, p_.trial);
             const double cost_there = cost(p_.trial, scale);
             if (!(cost_there <= current)) {
                 // Rounding is all that is left, or the step was too long.
-                if (scale <= 100 * rounding || current - cost_there > -1e-11 * current) break;
+                if ((scaled ? scale <= 100 * rounding : exact_start) || current - cost_there > -1e-11 * current) break;
                 damping = std::max(damping * 10, 1e-6);
                 if (damping > most_damping) break;
                 continue;
             }
             best.frame = next;
+            shape = shape_there;
             std::swap(p_.distance, p_.trial);
             fresh = false;
             ++accepted;
@@ -279,10 +307,10 @@ class Problem {
         if (!robust_) best.rms = std::sqrt(current / cost_of_rms(1));
         if (wanted > 0 && !(best.median <= wanted)) return best;
         double step[K], total = 0;
-        if (!fresh) e = normal_equations(best.frame, scale);
+        if (!fresh) e = normal_equations(best.frame, shape, scale);
         best.determined = solve(e, 0, step, smallest) && smallest > indistinguishable;
         for (std::size_t i = 0; i < p_.size(); ++i) total += p_.weight[i];
-        for (int i = 0; i < K; ++i) best.determined = best.determined && e.h[i][i] > no_effect * total;
+        for (int i = 0; i < K; ++i) best.determined = best.determined && e.h[i][std::size_t(i)] > no_effect * total;
         return best;
     }
 
@@ -322,38 +350,6 @@ class Problem {
 };
 
 }  // namespace
-
-double median_magnitude(const double* values, std::size_t n, double* scratch) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (n == 0) return 0;
-    const std::size_t middle = n / 2;
-    if (n <= few) {
-        // Counting ranks takes no branches that depend on the values.
-        double magnitude[few];
-        const std::size_t padded = (n + lane_count - 1) / lane_count * lane_count;
-        std::fill_n(magnitude + padded - lane_count, lane_count, infinity);
-        bool numbers = true;
-        for (std::size_t i = 0; i < n; ++i) {
-            magnitude[i] = std::abs(values[i]);
-            numbers = numbers && !std::isnan(magnitude[i]);
-        }
-        if (!numbers) return infinity;
-        for (std::size_t i = 0; i < n; ++i) {
-            std::int64_t below = 0, up_to = 0;
-            for (std::size_t j = 0; j < padded; ++j) {
-                below += magnitude[j] < magnitude[i] ? 1 : 0;
-                up_to += magnitude[j] <= magnitude[i] ? 1 : 0;
-            }
-            const auto rank = static_cast<std::int64_t>(middle);
-            if (below <= rank && rank < up_to) return magnitude[i];
-        }
-    }
-    for (std::size_t i = 0; i < n; ++i) scratch[i] = std::abs(values[i]);
-    for (std::size_t i = 0; i < n; ++i)
-        if (std::isnan(scratch[i])) return infinity;
-    std::nth_element(scratch, scratch + middle, scratch + n);
-    return scratch[middle];
-}
 
 namespace {
 

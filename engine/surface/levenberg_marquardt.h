@@ -30,7 +30,4 @@ Adjustment adjust(const ShapeFrame& start, LocalPoints& points, const FitOptions
 Adjustment adjust_towards(const Closeness& goal, const ShapeFrame& start, LocalPoints& points,
                           const FitOptions& options);
 
-/// Median of |values[0 … n)| with `scratch` of the same size.
-double median_magnitude(const double* values, std::size_t n, double* scratch);
-
 }  // namespace quadseg::surface

@@ -1,6 +1,8 @@
 #include "surface/quadric_refine.h"
 
+#include "quadric/pack.h"
 #include "surface/levenberg_marquardt.h"
+#include "surface/median.h"
 #include "surface/small_system.h"
 
 #include <algorithm>
@@ -12,7 +14,7 @@ namespace quadseg::surface {
 
 namespace {
 
-using quadric::Coefficients;
+using quadric::Coefficients, quadric::load_part, quadric::Part, quadric::part_size;
 
 constexpr double gradient_floor_share = 0.05;  // of the median |∇f|: apexes and axes must not explode
 constexpr double value_weight = 10;            // of f² beside |∇f − n|²: vertices are exact, normals are not
@@ -97,6 +99,30 @@ Vec3 in_frame(const QuadricFrame& f, const Vec3& p) {
     return {dot(u, f.axes[0]), dot(u, f.axes[1]), dot(u, f.axes[2])};
 }
 
+/// Some of the points in the frame's coordinates.
+struct PartInFrame {
+    Part x, y, z;
+
+    PartInFrame(const QuadricFrame& f, const LocalPoints& p, std::size_t first) {
+        const Part px = load_part(p.x + first) - f.origin.x, py = load_part(p.y + first) - f.origin.y,
+                   pz = load_part(p.z + first) - f.origin.z;
+        const auto along = [&](const Vec3& a, Part& out) { out = px * a.x + py * a.y + pz * a.z; };
+        along(f.axes[0], x);
+        along(f.axes[1], y);
+        along(f.axes[2], z);
+    }
+    void value(const Coefficients& c, Part& out) const {
+        out = c[0] + x * (c[1] + c[4] * x + c[5] * y + c[6] * z) + y * (c[2] + c[7] * y + c[8] * z) +
+              z * (c[3] + c[9] * z);
+    }
+    /// |∇f|
+    void steepness(const Coefficients& c, Part& out) const {
+        const Part gx = c[1] + 2 * c[4] * x + c[5] * y + c[6] * z, gy = c[2] + c[5] * x + 2 * c[7] * y + c[8] * z,
+                   gz = c[3] + c[6] * x + c[8] * y + 2 * c[9] * z;
+        quadric::square_root(gx * gx + gy * gy + gz * gz, out);
+    }
+};
+
 Vec3 direction_in_frame(const QuadricFrame& f, const Vec3& v) {
     return {dot(v, f.axes[0]), dot(v, f.axes[1]), dot(v, f.axes[2])};
 }
@@ -132,16 +158,24 @@ QuadricFrame moved(const QuadricFrame& f, const Shape& shape, const double* step
 }
 
 double gradient_floor(const QuadricFrame& f, LocalPoints& points) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-        points.trial[i] = norm(quadric::gradient(f.c, in_frame(f, points.point(i))));
+    for (std::size_t first = 0; first < points.padded(); first += part_size) {
+        const PartInFrame u(f, points, first);
+        Part steepness;
+        u.steepness(f.c, steepness);
+        quadric::store_part(points.trial + first, steepness);
+    }
     return gradient_floor_share * median_magnitude(points.trial, points.size(), points.sorted);
 }
 
 /// f / |∇f|, the gradient floored.
 void residuals(const QuadricFrame& f, double floor, LocalPoints& points, double* out) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec3 u = in_frame(f, points.point(i));
-        out[i] = quadric::value(f.c, u) / std::max(norm(quadric::gradient(f.c, u)), floor);
+    for (std::size_t first = 0; first < points.padded(); first += part_size) {
+        const PartInFrame u(f, points, first);
+        Part value, steepness;
+        u.value(f.c, value);
+        u.steepness(f.c, steepness);
+        quadric::maximum(Part{} + floor, steepness, steepness);
+        quadric::store_part(out + first, value / steepness);
     }
 }
 

@@ -65,8 +65,9 @@ class Finder {
   private:
     double noise(std::size_t i) const { return s_[i].noise + o_.rounding * s_[i].extent; }
     double angle_of(std::size_t i) const { return s_[i].extent > 0 ? noise(i) / s_[i].extent : o_.most_angle; }
-    double angle_tolerance(std::size_t i, std::size_t j) const {
-        return std::min(o_.sigmas * std::hypot(angle_of(i), angle_of(j)), o_.most_angle);
+    /// Within what noise and the bound allow. Most pairs are beyond the bound: they need no root.
+    bool is_tolerated(double angle, std::size_t i, std::size_t j) const {
+        return angle <= o_.most_angle && angle <= o_.sigmas * std::hypot(angle_of(i), angle_of(j));
     }
     /// `lever`: how far from its region a quantity is looked at.
     double length_tolerance(std::size_t i, std::size_t j, double lever_i, double lever_j) const {
@@ -105,11 +106,9 @@ class Finder {
     }
 
     void parallel() {
-        directions_ =
-            grouped([&](std::size_t i) { return has_direction(s_[i].surface.type) && squared_norm(direction(i)) > 0; },
-                    [&](std::size_t i, std::size_t j) {
-                        return norm(cross(direction(i), direction(j))) <= angle_tolerance(i, j);
-                    });
+        directions_ = grouped(
+            [&](std::size_t i) { return has_direction(s_[i].surface.type) && squared_norm(direction(i)) > 0; },
+            [&](std::size_t i, std::size_t j) { return is_tolerated(norm(cross(direction(i), direction(j))), i, j); });
         for (Group& g : directions_) {
             const Vec3 leader = direction(g.members[0]);
             Vec3 sum;
@@ -135,7 +134,7 @@ class Finder {
             int count = 0;
             for (std::size_t b = 0; b < a; ++b) {
                 const Group& h = directions_[by_weight[b]];
-                if (!(std::abs(dot(g.direction, h.direction)) <= angle_tolerance(g.members[0], h.members[0]))) continue;
+                if (!is_tolerated(std::abs(dot(g.direction, h.direction)), g.members[0], h.members[0])) continue;
                 report(Regularity::Kind::perpendicular, {g.members[0], h.members[0]});
                 Vec3 d = h.direction;
                 for (int k = 0; k < count; ++k) d -= dot(d, fixed[k]) * fixed[k];

@@ -8,6 +8,7 @@
 #include <quadseg/segmentation.h>
 
 #include "math/vec3.h"
+#include "quadric/pack.h"
 
 #include <cmath>
 
@@ -32,12 +33,8 @@ inline constexpr int parameters_of = type == SurfaceType::plane      ? 3
                                      : type == SurfaceType::cone     ? 6
                                                                      : 7;
 
-/// The larger one, the second if the first is no number: what processors do at once, unlike std::fmax.
-[[gnu::always_inline]] inline double at_least(double value, double least) noexcept {
-    return value > least ? value : least;
-}
-
-/// Distance of the point with frame coordinates (un, ug, ub) to the shape, signed along n, and its derivatives.
+/// Distance of points with frame coordinates (un, ug, ub) to the shape, signed along n, and its derivatives: of several
+/// points at once, a point a lane.
 template <SurfaceType type>
 struct ShapeDistance {
     double k, c, s, m;  // curvature, cos and sin of the tilt, minor curvature
@@ -45,59 +42,62 @@ struct ShapeDistance {
     explicit ShapeDistance(const ShapeFrame& f)
         : k(f.curvature), c(std::cos(f.tilt)), s(std::sin(f.tilt)), m(f.minor_curvature) {}
 
-    [[gnu::always_inline]] double distance(double un, double ug, double ub) const noexcept {
+    template <class Lanes>
+    [[gnu::always_inline]] void distance(const Lanes& un, const Lanes& ug, const Lanes& ub, Lanes& out) const noexcept {
         if constexpr (type == SurfaceType::plane) {
-            return un;
+            out = un;
         } else if constexpr (type == SurfaceType::sphere) {
-            const double a = k * (un * un + ug * ug + ub * ub) + 2 * un;
-            return a / (1 + std::sqrt(at_least(1 + k * a, 0.0)));
+            const Lanes a = k * (un * un + ug * ug + ub * ub) + 2 * un;
+            out = a / (1 + root_of(1 + k * a, 0));
         } else {
-            const double y = c * un + s * ug, z = c * ug - s * un;  // along the radius through p and along the axis
-            const double a = k * (y * y + ub * ub) + 2 * c * y, turn = k * y + c;
-            const double rho = std::sqrt(turn * turn + k * k * ub * ub);  // k · distance from the axis
-            const double across = a / (rho + c);                          // distance from the axis minus that of p
-            const double flat = c * across - s * z;
+            const Lanes y = c * un + s * ug, z = c * ug - s * un;  // along the radius through p and along the axis
+            const Lanes a = k * (y * y + ub * ub) + (2 * c) * y, turn = k * y + c;
+            Lanes rho;  // k · distance from the axis
+            quadric::square_root(turn * turn + (k * k) * ub * ub, rho);
+            const Lanes across = a / (rho + c);  // distance from the axis minus that of p
+            const Lanes flat = c * across - s * z;
             if constexpr (type == SurfaceType::torus) {
-                const double q = m * (across * across + z * z) + 2 * flat;
-                return q / (1 + std::sqrt(at_least(1 + m * q, 0.0)));
+                const Lanes q = m * (across * across + z * z) + 2 * flat;
+                out = q / (1 + root_of(1 + m * q, 0));
             } else {
-                return flat;
+                out = flat;
             }
         }
     }
 
-    /// Writes parameters_of<type> derivatives to column(i), i = 0 ….
-    template <class Column>
-    [[gnu::always_inline]] double derivatives(double un, double ug, double ub, Column&& column) const noexcept {
+    /// Writes parameters_of<type> derivatives to column[0 …], the distance to out.
+    template <class Lanes>
+    [[gnu::always_inline]] void derivatives(const Lanes& un, const Lanes& ug, const Lanes& ub, Lanes* column,
+                                            Lanes& out) const noexcept {
         if constexpr (type == SurfaceType::plane) {
-            column(0) = -1;
-            column(1) = -ub;
-            column(2) = ug;
-            return un;
+            column[0] = Lanes{} - 1.0;
+            column[1] = Lanes{} - ub;
+            column[2] = ug;
+            out = un;
         } else if constexpr (type == SurfaceType::sphere) {
-            const double uu = un * un + ug * ug + ub * ub, a = k * uu + 2 * un;
-            const double root = std::sqrt(at_least(1 + k * a, 1e-30)), inverse = 1 / root, d = a / (1 + root);
-            const double gn = (k * un + 1) * inverse, gg = k * ug * inverse, gb = k * ub * inverse;
-            column(0) = -gn;
-            column(1) = un * gb - ub * gn;
-            column(2) = ug * gn - un * gg;
-            column(3) = (uu - d * d) * 0.5 * inverse;
-            return d;
+            const Lanes uu = un * un + ug * ug + ub * ub, a = k * uu + 2 * un;
+            const Lanes root = root_of(1 + k * a, 1e-30), inverse = 1 / root, d = a / (1 + root);
+            const Lanes gn = (k * un + 1) * inverse, gg = k * ug * inverse, gb = k * ub * inverse;
+            column[0] = Lanes{} - gn;
+            column[1] = un * gb - ub * gn;
+            column[2] = ug * gn - un * gg;
+            column[3] = (uu - d * d) * 0.5 * inverse;
+            out = d;
         } else {
-            const double y = c * un + s * ug, z = c * ug - s * un, mm = y * y + ub * ub;
-            const double a = k * mm + 2 * c * y, turn = k * y + c;
-            const double rho = std::sqrt(at_least(turn * turn + k * k * ub * ub, 1e-30));
-            const double inverse = 1 / rho, below = 1 / (rho + c), across = a * below;
-            const double across_y = turn * inverse, across_b = k * ub * inverse;
-            const double across_k = (mm - across * (k * mm + c * y) * inverse) * below;
-            const double across_c = (2 * y - across * (turn * inverse + 1)) * below;
-            const double across_tilt = across_y * z - s * across_c;
-            const double flat = c * across - s * z;
-            double d, d_across, d_z, d_tilt;
-            [[maybe_unused]] double d_minor = 0;
+            const Lanes y = c * un + s * ug, z = c * ug - s * un, mm = y * y + ub * ub;
+            const Lanes a = k * mm + (2 * c) * y, turn = k * y + c;
+            const Lanes rho = root_of(turn * turn + (k * k) * ub * ub, 1e-30);
+            const Lanes inverse = 1 / rho, below = 1 / (rho + c), across = a * below;
+            const Lanes across_y = turn * inverse, across_b = k * ub * inverse;
+            const Lanes across_k = (mm - across * (k * mm + c * y) * inverse) * below;
+            const Lanes across_c = (2 * y - across * (turn * inverse + 1)) * below;
+            const Lanes across_tilt = across_y * z - s * across_c;
+            const Lanes flat = c * across - s * z;
+            Lanes d, d_across, d_z, d_tilt;
+            [[maybe_unused]] Lanes d_minor;
             if constexpr (type == SurfaceType::torus) {
-                const double far = across * across + z * z, q = m * far + 2 * flat;
-                const double root = std::sqrt(at_least(1 + m * q, 1e-30)), by = 1 / root;
+                const Lanes far = across * across + z * z, q = m * far + 2 * flat;
+                const Lanes root = root_of(1 + m * q, 1e-30), by = 1 / root;
                 d = q / (1 + root);
                 d_across = (m * across + c) * by;
                 d_z = (m * z - s) * by;
@@ -105,21 +105,30 @@ struct ShapeDistance {
                 d_minor = (far - d * d) * 0.5 * by;
             } else {
                 d = flat;
-                d_across = c;
-                d_z = -s;
+                d_across = Lanes{} + c;
+                d_z = Lanes{} - s;
                 d_tilt = -s * across - c * z;
             }
-            const double gn = d_across * across_y * c - d_z * s, gg = d_across * across_y * s + d_z * c;
-            const double gb = d_across * across_b;
-            column(0) = -gn;
-            column(1) = un * gb - ub * gn;
-            column(2) = ug * gn - un * gg;
-            column(3) = ub * gg - ug * gb;
-            column(4) = d_across * across_k;
-            if constexpr (type != SurfaceType::cylinder) column(5) = d_tilt + d_across * across_tilt - d_z * y;
-            if constexpr (type == SurfaceType::torus) column(6) = d_minor;
-            return d;
+            const Lanes gn = d_across * across_y * c - d_z * s, gg = d_across * across_y * s + d_z * c;
+            const Lanes gb = d_across * across_b;
+            column[0] = Lanes{} - gn;
+            column[1] = un * gb - ub * gn;
+            column[2] = ug * gn - un * gg;
+            column[3] = ub * gg - ug * gb;
+            column[4] = d_across * across_k;
+            if constexpr (type != SurfaceType::cylinder) column[5] = d_tilt + d_across * across_tilt - d_z * y;
+            if constexpr (type == SurfaceType::torus) column[6] = d_minor;
+            out = d;
         }
+    }
+
+  private:
+    template <class Lanes>
+    [[gnu::always_inline]] static Lanes root_of(const Lanes& value, double least) noexcept {
+        Lanes bounded, root;
+        quadric::maximum(value, Lanes{} + least, bounded);
+        quadric::square_root(bounded, root);
+        return root;
     }
 };
 

@@ -3,6 +3,7 @@
 #include "surface/evaluate.h"
 #include "surface/fit_starts.h"
 #include "surface/local_points.h"
+#include "surface/median.h"
 #include "surface/shape_frame.h"
 
 #include <algorithm>

@@ -24,8 +24,15 @@ Json vector_json(const std::array<double, 3>& v) {
     return list_json(v[0], v[1], v[2]);
 }
 
+/// Empty, with room: keys are constant, so that one that grows copies all that it has.
+Json object_json(std::size_t fields) {
+    Json json = Json::object();
+    json.get_ref<Json::object_t&>().reserve(fields);
+    return json;
+}
+
 Json region_json(const Region& region) {
-    Json json;
+    Json json = object_json(12);
     json["id"] = region.id;
     json["type"] = to_string(region.surface.type);
     json["faces"] = region.faces;
@@ -57,7 +64,7 @@ Json regularities_json(const std::vector<Regularity>& regularities) {
     Json::array_t list;
     list.reserve(regularities.size());
     for (const Regularity& regularity : regularities) {
-        Json& json = list.emplace_back(Json::object());
+        Json& json = list.emplace_back(object_json(3));
         json["kind"] = to_string(regularity.kind);
         json["regions"] = regularity.regions;
         json["snapped"] = regularity.snapped;
@@ -120,7 +127,7 @@ Json options_json(const Options& options) {
 }
 
 Json parameters_json(const Surface& s) {
-    Json json = Json::object();
+    Json json = object_json(4);
     switch (s.type) {
         case SurfaceType::plane:
             json["normal"] = vector_json(s.axis);
@@ -160,7 +167,7 @@ Json parameters_json(const Surface& s) {
 }
 
 Json result_json(const std::string& file, const Mesh& mesh, const Options& options, const Segmentation& segmentation) {
-    Json json;
+    Json json = object_json(24);
     json["quadseg"] = QUADSEG_VERSION;
     json["input"] = input_json(file, mesh, segmentation.input);
     json["options"] = options_json(options);
