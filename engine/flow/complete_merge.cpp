@@ -106,7 +106,8 @@ class CompleteMerger {
 
     double allowance(const Pair& p) const noexcept {
         const double smaller = std::min(parts_[p.a].moments.moments.total_area, parts_[p.b].moments.moments.total_area);
-        return rules_.region_price + rules_.border_reward * p.border + rules_.misfit * smaller;
+        return rules_.region_price + rules_.border_reward * p.border + rules_.misfit * smaller +
+               partition::blurred(rules_.blur, rules_.blur_area, smaller);
     }
 
     MergeRegion join(const MergeRegion& a, const MergeRegion& b) const noexcept {

@@ -53,6 +53,10 @@ Prices prices_at(double ratio) {
             between(a.border, b.border)};
 }
 
+/// Least squares miss the best surface by a share of the energy, which on a large one is more than any price: two
+/// surfaces that are √.1 σ apart (RMS) are one, where they have many more than so many vertices.
+constexpr double blur = 0.1, blur_vertices = 500;
+
 constexpr int relax_steps = 2;
 constexpr int cut_rings = 4;
 constexpr std::size_t smallest_region = 8;
@@ -72,6 +76,8 @@ class NoisyFlow {
         border_price_ = prices_.border * evidence_ / h;
         const double angle = misfit_angle(noise) * std::numbers::pi / 180;
         misfit_ = angle * angle * weight_ / input.options.detail;
+        blur_ = blur * noise.sigma * noise.sigma;
+        blur_area_ = blur_vertices * 2 * mean_area;
         result_.noise = noise.sigma;
     }
 
@@ -154,6 +160,8 @@ class NoisyFlow {
         });
         partition::MergeRules rules;
         rules.misfit = misfit_;
+        rules.blur = blur_;
+        rules.blur_area = blur_area_;
         partition::Merging merging = partition::merge_pairs(
             std::move(regions_), partition::region_pairs(passage_, labels_, control_), rules, score, control_);
         for (std::int32_t& label : labels_) label = merging.region_of[static_cast<std::size_t>(label)];
@@ -173,6 +181,8 @@ class NoisyFlow {
                              std::log(static_cast<double>(mesh_.face_count()));
         rules.border_reward = prices_.border_share * border_price_;
         rules.misfit = misfit_;
+        rules.blur = blur_;
+        rules.blur_area = blur_area_;
         count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), rules, control_);
         control_.report(Phase::fine, 0.7, count_);
     }
@@ -249,7 +259,7 @@ class NoisyFlow {
     double ratio_ = 0;
     double evidence_ = 0;  ///< what one parameter takes from ∫d² on pure noise: σ² times the area of a vertex
     Prices prices_;
-    double weight_ = 0, border_price_ = 0, misfit_ = 0;
+    double weight_ = 0, border_price_ = 0, misfit_ = 0, blur_ = 0, blur_area_ = 0;
     Labels labels_;
     std::size_t count_ = 0;
     std::vector<partition::MergeRegion> regions_;

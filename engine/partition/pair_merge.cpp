@@ -138,7 +138,9 @@ class Merger {
         }
         const MergeRegion &a = regions_[e.a], &b = regions_[e.b];
         const double saved = a.score.dof + b.score.dof - joint.score.dof;
-        return e.rise <= rules_.misfit * std::min(a.moments.total_area, b.moments.total_area) + rules_.noise * saved;
+        const double smaller = std::min(a.moments.total_area, b.moments.total_area);
+        return e.rise <=
+               rules_.misfit * smaller + blurred(rules_.blur, rules_.blur_area, smaller) + rules_.noise * saved;
     }
 
     std::vector<RegionPair> root_pairs(const std::vector<RegionPair>& pairs) {

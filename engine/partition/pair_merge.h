@@ -42,11 +42,18 @@ struct RegionPair {
 };
 std::vector<RegionPair> region_pairs(const Passage& passage, const Labels& labels, const runtime::RunControl& control);
 
+/// Allowance for what noise hides: of large areas a share of their energy, of areas far below blur_area nothing.
+inline double blurred(double blur, double blur_area, double area) noexcept {
+    return blur > 0 ? blur * area * area / (area + blur_area) : 0;
+}
+
 struct MergeRules {
     bool only_acceptable = false;  ///< the rule below holds on the way to the target as well
     std::size_t target = 0;  ///< merge down to this many regions, whatever it costs; 0: as long as a pair is acceptable
-    /// Acceptable: cost(ij) − cost(i) − cost(j) ≤ misfit · min(area) + noise · (dof(i) + dof(j) − dof(ij)).
+    /// Acceptable: cost(ij) − cost(i) − cost(j) ≤ misfit · min(area) + blurred(min(area)) + noise · (dof(i) + dof(j) −
+    /// dof(ij)).
     double misfit = 0;
+    double blur = 0, blur_area = 0;
     double noise = 0;
     /// When > 0 instead of those: the RMS distance of the union, sqrt(distance / area), is at most this.
     double tolerance = 0;
