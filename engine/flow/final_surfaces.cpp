@@ -362,8 +362,10 @@ class Finisher {
         SurfaceFit fit = general_fails ? choice.torus(tolerance) : choice.run();
         const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
         const bool plane = fit.ok && fit.surface.type == SurfaceType::plane;
+        // Noise turns the mesh's normals as far from the right surface as from the region's quadric.
+        const double turned = free_form ? 0 : normal_deviation(own, few.all());
         if (judged && (!fit.ok || !(fit.rms <= 2 * tolerance) ||
-                       (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few))))) {
+                       (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few, turned))))) {
             SurfaceFit trimmed = free_form ? mostly_exact(few, tolerance) : SurfaceFit{};
             if (free_form && !trimmed.ok) trimmed = nearly_exact(few, result.extent);
             if (trimmed.ok) {
@@ -453,9 +455,10 @@ class Finisher {
         return !general.ok || !(general.rms <= tolerance);
     }
 
-    static bool wrong_normals(const Surface& s, const RegionSample& sample) {
+    /// turned: mean squared deviation of the normals that is not the surface's doing.
+    static bool wrong_normals(const Surface& s, const RegionSample& sample, double turned = 0) {
         constexpr double limit = free_form_angle * 3.14159265358979 / 180;
-        return !(normal_deviation(s, sample.all()) <= limit * limit);
+        return !(normal_deviation(s, sample.all()) <= limit * limit + turned);
     }
 
     void describe_free_form(const RegionSample& sample, FinalSurface& result) const {

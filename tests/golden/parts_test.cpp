@@ -59,5 +59,18 @@ INSTANTIATE_TEST_SUITE_P(Generated, Parts,
                                          Part{"rounded_octahedron", 20000},
                                          Part{"quadrics", 20000, 0.998, 12, 0.998, 2.6e-3}));
 
+/// Normals of rough vertices tell no type: every cylinder was free-form.
+TEST(NoisyParts, KeepTheNamesOfTheirSurfaces) {
+    const datasets::Generated flange = datasets::generate("flange", 30000, 0.002);
+    const Segmentation s = segment(flange.mesh.view());
+    const auto count = [&](SurfaceType type) {
+        return std::count_if(s.regions.begin(), s.regions.end(),
+                             [&](const Region& r) { return r.surface.type == type; });
+    };
+    EXPECT_GE(count(SurfaceType::cylinder), 9);
+    EXPECT_GE(count(SurfaceType::cone), 3);
+    EXPECT_LE(count(SurfaceType::freeform), 3);
+}
+
 }  // namespace
 }  // namespace quadseg::test
