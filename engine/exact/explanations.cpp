@@ -9,8 +9,11 @@ namespace quadseg::exact {
 
 namespace {
 
-/// Beyond, answers are not kept: a bound on memory, not on results.
-constexpr std::size_t most_known = 1 << 16;
+/// Of all questions together; beyond, answers are not kept: a bound on memory, not on results. A facet may have any
+/// number of faces.
+constexpr std::size_t most_faces = std::size_t{1} << 21U;
+/// What a question takes beside its faces, in these.
+constexpr std::size_t faces_a_question = 128;
 
 }  // namespace
 
@@ -32,7 +35,8 @@ std::optional<Surface> Explanations::of(std::span<const std::uint32_t> faces, bo
     }
     const std::optional<Surface> surface = explain(scene_, question.faces, tolerance_, coarse, marks);
     const std::lock_guard lock(mutex_);
-    if (known_.size() < most_known) known_.emplace(std::move(question), surface);
+    const std::size_t size = question.faces.size() + faces_a_question;
+    if (size <= most_faces - kept_ && known_.emplace(std::move(question), surface).second) kept_ += size;
     return surface;
 }
 

@@ -37,6 +37,7 @@ class Explanations {
     double tolerance_;
     std::mutex mutex_;
     std::unordered_map<Question, std::optional<Surface>, Hash> known_;
+    std::size_t kept_ = 0;  ///< faces of all questions, and what comes with them
 };
 
 }  // namespace quadseg::exact

@@ -240,6 +240,7 @@ void release_extruded(const Scene& scene, Explained& state) {
     for (std::size_t f = 0; f < state.region.size(); ++f) {
         if (state.region[f] < 0) continue;
         const auto r = static_cast<std::size_t>(state.region[f]);
+        if (may_be_extruded(state.surface[r].type)) continue;
         spread[r].add_outer(scene.mesh.normals[f], scene.mesh.areas[f]);
         area[r] += scene.mesh.areas[f];
     }

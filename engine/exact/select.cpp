@@ -94,7 +94,7 @@ class Selector {
 
     /// Where a candidate has no rival, any claim that is allowed will do.
     void score_claims() {
-        std::vector<std::uint8_t> rivals(scene_.mesh.face_count(), 0);
+        std::vector<std::uint8_t> rivals(scene_.mesh.face_count(), 0);  // at most two are counted
         for (std::size_t c = 0; c < candidates_.size(); ++c) {
             if (!is_alive(c)) continue;
             for (const std::uint32_t f : candidates_[c].faces) {
@@ -102,6 +102,7 @@ class Selector {
             }
         }
         claims_.assign(candidates_.size(), {});
+        contested_.assign(candidates_.size(), {});
         runtime::parallel_for(candidates_.size(), 1, [&](std::size_t c) {
             if (!is_alive(c)) return;
             const Candidate& candidate = candidates_[c];
@@ -110,8 +111,10 @@ class Selector {
             const double allowed_step = 1.7 * std::max(largest_step_, candidate.step);
             claims_[c].reserve(candidate.faces.size());
             std::size_t polls = 0;
-            for (const std::uint32_t f : candidate.faces) {
+            for (std::size_t i = 0; i < candidate.faces.size(); ++i) {
+                const std::uint32_t f = candidate.faces[i];
                 scene_.control.check_often(polls);
+                if (rivals[f] > 1) contested_[c].push_back(static_cast<std::uint32_t>(i));
                 if (plane && rivals[f] == 1) {
                     claims_[c].push_back(0);
                     continue;
@@ -133,9 +136,21 @@ class Selector {
     void assign() {
         std::vector<float> best(scene_.mesh.face_count(), 0);
         std::fill(result_.owner.begin(), result_.owner.end(), -1);
+        // Most faces have one claim only: all threads see to those.
+        runtime::parallel_for(candidates_.size(), 1, [&](std::size_t c) {
+            if (!is_alive(c)) return;
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < candidates_[c].faces.size(); ++i) {
+                if (next < contested_[c].size() && contested_[c][next] == i) {
+                    ++next;
+                } else if (!(claims_[c][i] < 0)) {
+                    result_.owner[candidates_[c].faces[i]] = static_cast<std::int32_t>(c);
+                }
+            }
+        });
         for (const std::uint32_t c : by_area_) {
             if (!is_alive(c)) continue;
-            for (std::size_t i = 0; i < candidates_[c].faces.size(); ++i) {
+            for (const std::uint32_t i : contested_[c]) {
                 const std::uint32_t f = candidates_[c].faces[i];
                 const float score = claims_[c][i];
                 if (score < 0 || (result_.owner[f] >= 0 && best[f] <= score + clear_gain)) continue;
@@ -162,7 +177,8 @@ class Selector {
     double largest_step_;
     std::vector<std::uint32_t> by_area_;
     std::vector<std::uint8_t> alive_;
-    std::vector<std::vector<float>> claims_;
+    std::vector<std::vector<float>> claims_;             ///< a face of each candidate
+    std::vector<std::vector<std::uint32_t>> contested_;  ///< of these, the ones that others claim too
     Selection result_;
 };
 

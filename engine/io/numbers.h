@@ -71,6 +71,21 @@ inline bool take_integer(const char*& p, std::int64_t& value) noexcept {
     return true;
 }
 
+/// Up to nine digits behind blanks and before one or the line's end, which is nearly every index; false, and p as it
+/// was, for whatever else take_integer() may find there.
+inline bool take_plain_index(const char*& p, std::uint32_t& value) noexcept {
+    const char* q = p;
+    while (*q == ' ') ++q;
+    const char* digits = q;
+    std::uint32_t sum = 0;  // wraps round where there are too many
+    for (unsigned digit; (digit = static_cast<unsigned char>(*q) - unsigned{'0'}) <= 9; ++q) sum = 10 * sum + digit;
+    const auto count = static_cast<std::size_t>(q - digits);
+    if (count - 1 >= 9 || (*q != ' ' && *q != '\n')) return false;
+    p = q;
+    value = sum;
+    return true;
+}
+
 /// The word at p for a message: shortened, unprintable bytes as '?'.
 inline std::string quoted_word(const char* p) {
     skip_blanks(p);

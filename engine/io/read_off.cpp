@@ -94,13 +94,13 @@ std::optional<Fault> read_vertex(const char* p, const char* end, std::size_t ver
     return {};
 }
 
-/// Three indices in range; else nothing is taken.
+/// A size of three and as many indices in range, plainly written; else nothing is taken.
 bool read_triangle(const char* p, std::size_t vertices, FaceBlock& block) {
+    std::uint32_t size = 0;
+    if (!take_plain_index(p, size) || size != 3) return false;
     std::array<std::uint32_t, 3> corners;
     for (std::uint32_t& corner : corners) {
-        std::int64_t index = 0;
-        if (!take_integer(p, index) || index < 0 || static_cast<std::size_t>(index) >= vertices) return false;
-        corner = static_cast<std::uint32_t>(index);
+        if (!take_plain_index(p, corner) || corner >= vertices) return false;
     }
     for (const std::uint32_t corner : corners) block.corners.push_back(corner);
     block.close_face(3);
@@ -108,6 +108,7 @@ bool read_triangle(const char* p, std::size_t vertices, FaceBlock& block) {
 }
 
 std::optional<Fault> read_face(const char* p, std::size_t face, std::size_t vertices, FaceBlock& block) {
+    if (read_triangle(p, vertices, block)) return {};
     std::int64_t size = 0;
     if (!take_integer(p, size)) {
         return Fault{
@@ -115,7 +116,6 @@ std::optional<Fault> read_face(const char* p, std::size_t face, std::size_t vert
             "face " + std::to_string(face) + " (counted from 0) needs its number of corners; found " + quoted_word(p)};
     }
     if (size < 3) return too_few_corners(p, face, size);
-    if (size == 3 && read_triangle(p, vertices, block)) return {};
     for (std::int64_t k = 0; k < size; ++k) {
         std::int64_t index = 0;
         if (!take_integer(p, index)) {

@@ -15,6 +15,7 @@ namespace quadseg {
 namespace {
 
 using io::AtomicFile;
+using io::RawBytes;
 using io::store_little_endian;
 using io::write_blocks;
 
@@ -45,9 +46,8 @@ bool all_floats(std::span<const double> positions) {
 
 template <class Number>
 void write_ply_positions(AtomicFile& file, std::span<const double> positions) {
-    write_blocks(file, positions.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
-        out.resize((end - begin) * sizeof(Number));
-        char* p = out.data();
+    write_blocks<RawBytes>(file, positions.size(), [&](std::size_t begin, std::size_t end, RawBytes& out) {
+        char* p = out.make((end - begin) * sizeof(Number));
         for (std::size_t i = begin; i < end; ++i, p += sizeof(Number)) {
             store_little_endian(p, static_cast<Number>(positions[i]));
         }
@@ -57,9 +57,8 @@ void write_ply_positions(AtomicFile& file, std::span<const double> positions) {
 template <bool Coloured, bool Labelled>
 void write_ply_faces(AtomicFile& file, std::span<const std::uint32_t> triangles, const FaceColors& faces) {
     constexpr std::size_t bytes = 13 + (Coloured ? 3 : 0) + (Labelled ? 4 : 0);
-    write_blocks(file, triangles.size() / 3, [&](std::size_t begin, std::size_t end, std::string& out) {
-        out.resize((end - begin) * bytes);
-        char* p = out.data();
+    write_blocks<RawBytes>(file, triangles.size() / 3, [&](std::size_t begin, std::size_t end, RawBytes& out) {
+        char* p = out.make((end - begin) * bytes);
         for (std::size_t f = begin; f < end; ++f) {
             *p++ = 3;
             for (std::size_t k = 0; k < 3; ++k, p += 4) store_little_endian(p, triangles[3 * f + k]);
@@ -166,9 +165,9 @@ void write_stl(const std::string& path, AtomicFile& file, const MeshView& mesh) 
     prefix.replace(0, title.size(), title);
     store_little_endian(prefix.data() + io::stl_header_bytes, static_cast<std::uint32_t>(mesh.face_count()));
     file.write(prefix);
-    write_blocks(file, mesh.face_count(), [&](std::size_t begin, std::size_t end, std::string& out) {
-        out.resize((end - begin) * io::stl_facet_bytes);
-        for (std::size_t f = begin; f < end; ++f) write_facet(&out[(f - begin) * io::stl_facet_bytes], mesh, f);
+    write_blocks<RawBytes>(file, mesh.face_count(), [&](std::size_t begin, std::size_t end, RawBytes& out) {
+        char* const facets = out.make((end - begin) * io::stl_facet_bytes);
+        for (std::size_t f = begin; f < end; ++f) write_facet(facets + (f - begin) * io::stl_facet_bytes, mesh, f);
     });
 }
 

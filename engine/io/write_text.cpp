@@ -22,16 +22,16 @@ void write_labels(const std::string& path, std::span<const std::int32_t> labels,
                                                      std::to_string(polygons.size()) + " polygon numbers");
     }
     io::AtomicFile file(path);
-    io::write_blocks(file, labels.size(), [&](std::size_t begin, std::size_t end, std::string& out) {
+    io::write_blocks<io::RawBytes>(file, labels.size(), [&](std::size_t begin, std::size_t end, io::RawBytes& out) {
         constexpr std::size_t longest_line = 12;
-        out.resize((end - begin) * longest_line);
-        char* p = out.data();
+        char* const first = out.make((end - begin) * longest_line);
+        char* p = first;
         for (std::size_t i = begin; i < end; ++i) {
             if (!polygons.empty() && i > 0 && polygons[i] == polygons[i - 1]) continue;
             p = std::to_chars(p, p + longest_line, labels[i]).ptr;
             *p++ = '\n';
         }
-        out.resize(static_cast<std::size_t>(p - out.data()));
+        out.shorten(static_cast<std::size_t>(p - first));
     });
     file.commit();
 }

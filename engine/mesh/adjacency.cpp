@@ -8,6 +8,7 @@
 #include <atomic>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace quadseg::mesh::build {
 
@@ -143,13 +144,26 @@ std::size_t count_non_manifold_vertices(const WorkMesh& mesh, const runtime::Run
         }
         return size;
     };
-    // The first corner of each vertex: vertices are numbered by first use, so it is where a new number appears.
+    // The first corner of each vertex: vertices are numbered by first use, so it is where a new number appears. The
+    // first new one of a block of faces follows the largest before it.
     std::vector<std::uint32_t> first(mesh.vertex_count());
-    for (std::size_t f = 0, seen = 0; f < mesh.face_count(); ++f) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (mesh.faces[f][k] == seen) first[seen++] = static_cast<std::uint32_t>(3 * f + k);
+    std::vector<std::uint32_t> seen((mesh.face_count() + block - 1) / block, 0);
+    runtime::parallel_blocks(mesh.face_count(), block, [&](std::size_t begin, std::size_t end) {
+        control.check();
+        std::uint32_t& after = seen[begin / block];
+        for (std::size_t f = begin; f < end; ++f)
+            for (const std::uint32_t v : mesh.faces[f]) after = std::max(after, v + 1);
+    });
+    for (std::uint32_t before = 0; std::uint32_t & after : seen)
+        before = std::max(before, std::exchange(after, before));
+    runtime::parallel_blocks(mesh.face_count(), block, [&](std::size_t begin, std::size_t end) {
+        std::uint32_t next = seen[begin / block];
+        for (std::size_t f = begin; f < end; ++f) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (mesh.faces[f][k] == next) first[next++] = static_cast<std::uint32_t>(3 * f + k);
+            }
         }
-    }
+    });
     control.check();
     std::vector<std::uint32_t> fan(mesh.vertex_count());
     const std::size_t corners = runtime::reduce_blocks(

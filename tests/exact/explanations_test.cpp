@@ -39,7 +39,9 @@ TEST(Explanations, DependOnTheSetOfFacesAlone) {
         std::sort(faces.begin(), faces.end());
         const std::optional<Surface> direct = explain(scene, faces, scene.tolerances.fit, true, marks);
         ASSERT_EQ(direct.has_value(), first.has_value());
-        if (first) EXPECT_EQ(direct->point, first->point);
+        if (first) {
+            EXPECT_EQ(direct->point, first->point);
+        }
         if (first) ++explained;
     }
     EXPECT_GT(explained, 10u);

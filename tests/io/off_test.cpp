@@ -49,6 +49,18 @@ TEST(Off, IgnoresColoursNormalsAndTextureCoordinates) {
     }
 }
 
+TEST(Off, IndicesNeedNotBePlainlyWritten) {
+    const std::string vertices = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
+    for (const char* face : {"3 0 1 2", "  3   0  1 2  ", "3\t0\t1\t2", "+3 +0 +1 +2", "3 0 1 2# red", "3 0 1 2\t",
+                             "003 0000000000000 01 2"}) {
+        EXPECT_EQ(parse(vertices + face + "\n", "t").triangles, (Triangles{0, 1, 2})) << face;
+    }
+    // 2^32 + 2 is not 2.
+    for (const char* face : {"3 0 1 4294967298", "3 0 1 3", "3 0 1 -2", "3 0 1 2.0", "3 0 1"}) {
+        EXPECT_THROW(parse(vertices + face + "\n", "t"), Error) << face;
+    }
+}
+
 TEST(Off, CommentsAndBlankLinesMayStandAnywhere) {
     EXPECT_EQ(
         parse("OFF\n3 1 0 # counts\n\n0 0 0\n# between\n1 0 0 # v\n \t\n0 1 0\n\n3 0 1 2\n\n# end", "t").triangles,
