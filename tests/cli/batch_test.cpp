@@ -242,7 +242,7 @@ TEST_F(Batch, ACrashIsIsolated) {
 }
 
 TEST_F(Batch, TimeOutKeepsThePartialResult) {
-    mesh("slow.ply", "plate", 60000);
+    mesh("slow.ply", "plate", 400000);
     const Outcome outcome = run(batch("--timeout 0.1"));
     EXPECT_EQ(outcome.code, 4) << outcome.output;
     const json record = record_of(log(), "slow.ply");
