@@ -57,11 +57,22 @@ Region describe_region(const mesh::WorkMesh& mesh, std::size_t r, const FinalSur
 void smooth(const FlowInput& input, FlowResult& flow, partition::RegionFaces& regions,
             std::vector<FinalSurface>& surfaces, Segmentation& result) {
     result.borders_before = partition::measure_borders(input.mesh, flow.labels);
-    if (smooth_borders(input, flow, surfaces)) {
-        regions = partition::region_faces(flow.labels, flow.regions);
-        surfaces = final_surfaces(input, regions, flow);
-    }
+    result.borders_after = result.borders_before;
+    if (!smooth_borders(input, flow, surfaces)) return;
+    regions = partition::region_faces(flow.labels, flow.regions);
+    surfaces = final_surfaces(input, regions, flow);
     result.borders_after = partition::measure_borders(input.mesh, flow.labels);
+}
+
+/// A result that lacks nothing else than this is partial too.
+void project(const FlowInput& input, const std::vector<FinalSurface>& surfaces, FlowResult& flow,
+             Segmentation& result) {
+    try {
+        result.projected = projected_positions(input, flow.labels, surfaces);
+    } catch (const runtime::Stopped& stopped) {
+        flow.partial = true;
+        flow.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
+    }
 }
 
 /// What the flow tells about itself, and the labels.
@@ -155,7 +166,7 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
         result.max = std::max(result.max, region.max);
         result.regions.push_back(region);
     }
-    if (options.project && whole) result.projected = projected_positions(input, flow.labels, surfaces);
+    if (options.project && whole) project(input, surfaces, flow, result);
     hand_over(input, std::move(flow), squared, result);
     return result;
 }
