@@ -279,25 +279,38 @@ bool build_collapse_mesh(std::span<const Vec3> positions, std::span<const Face> 
                          const std::function<bool()>& stopped, CollapseMesh& mesh) {
     const std::size_t vertices = positions.size(), n = faces.size();
     mesh.frame = box_frame(positions);
-    mesh.vertices.resize(vertices);
+    // A million of them are 128 MB, of which the system clears every page first.
+    constexpr std::size_t step = 65536;
+    mesh.vertices.reserve(vertices);
+    while (mesh.vertices.size() < vertices) {
+        if (stopped()) return false;
+        mesh.vertices.resize(std::min(vertices, mesh.vertices.size() + step));
+    }
     mesh.first_corner.assign(vertices, none);
     mesh.next_corner.assign(3 * n, none);
     mesh.faces.assign(faces.begin(), faces.end());
-    runtime::parallel_for(vertices, grain, [&](std::size_t v) {
-        mesh.vertices[v].position = mesh.frame.to_unit(finite_or_zero(positions[v]));
-        mesh.vertices[v].source = static_cast<std::uint32_t>(v);
+    runtime::parallel_blocks(vertices, grain, [&](std::size_t begin, std::size_t end) {
+        if (stopped()) return;
+        for (std::size_t v = begin; v < end; ++v) {
+            mesh.vertices[v].position = mesh.frame.to_unit(finite_or_zero(positions[v]));
+            mesh.vertices[v].source = static_cast<std::uint32_t>(v);
+        }
     });
+    if (stopped()) return false;
     std::vector<Vec3> normals(n);
     std::vector<double> areas(n);
-    runtime::parallel_for(n, grain, [&](std::size_t i) {
-        Face& f = mesh.faces[i];
-        if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) {
-            f = {none, none, none};
-            return;
+    runtime::parallel_blocks(n, grain, [&](std::size_t begin, std::size_t end) {
+        if (stopped()) return;
+        for (std::size_t i = begin; i < end; ++i) {
+            Face& f = mesh.faces[i];
+            if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) {
+                f = {none, none, none};
+                continue;
+            }
+            const Vec3 doubled = mesh.area_vector(f);
+            areas[i] = 0.5 * norm(doubled);
+            normals[i] = normalized(doubled);
         }
-        const Vec3 doubled = mesh.area_vector(f);
-        areas[i] = 0.5 * norm(doubled);
-        normals[i] = normalized(doubled);
     });
     mesh.face_count = 0;
     for (std::size_t i = n; i-- > 0;) {  // from the last to the first: the lists come out ascending

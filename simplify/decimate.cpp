@@ -45,7 +45,7 @@ class Decimator {
         for (std::size_t phase = 0; phase < most_phases && !stopped_(); ++phase) {
             const auto count = static_cast<double>(alive_.size());
             if (alive_.size() <= one_piece_faces || count <= reserve * static_cast<double>(target_)) break;
-            collapse_pieces(phase);
+            if (!collapse_pieces(phase)) break;
             if (static_cast<double>(alive_.size()) > (1 - least_progress) * count) break;
         }
         if (!stopped_()) collapse_whole();
@@ -55,8 +55,8 @@ class Decimator {
     double max_error() const noexcept { return max_error_; }
 
   private:
-    void collapse_pieces(std::size_t phase) {
-        cut_into_pieces(mesh_, phase, piece_faces, alive_, pieces_);
+    bool collapse_pieces(std::size_t phase) {
+        if (!cut_into_pieces(mesh_, phase, piece_faces, stopped_, alive_, pieces_)) return false;
         const auto count = static_cast<double>(alive_.size());
         const auto target = static_cast<double>(target_);
         PieceLimits limits;
@@ -78,6 +78,7 @@ class Decimator {
         alive_.clear();
         for (const auto& part : survivors) alive_.insert(alive_.end(), part.begin(), part.end());
         for (const double error : errors) max_error_ = std::max(max_error_, error);
+        return true;
     }
 
     void collapse_whole() {

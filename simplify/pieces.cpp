@@ -60,7 +60,8 @@ void radix_pass(const std::vector<Keyed>& from, std::vector<Keyed>& to, int shif
     });
 }
 
-void sort_along_curve(const CollapseMesh& mesh, std::size_t phase, std::vector<std::uint32_t>& alive) {
+bool sort_along_curve(const CollapseMesh& mesh, std::size_t phase, const std::function<bool()>& stopped,
+                      std::vector<std::uint32_t>& alive) {
     // Multiples of three numbers that no small integers relate.
     const auto turn = static_cast<double>(phase);
     const auto fraction = [&](double step) { return turn * step - std::floor(turn * step); };
@@ -71,10 +72,12 @@ void sort_along_curve(const CollapseMesh& mesh, std::size_t phase, std::vector<s
         keyed[i] = {morton_key(mesh.vertices[mesh.faces[f][0]].position, shift), f};  // any point of it will do
     });
     for (int pass = 0; pass < passes; ++pass) {
+        if (stopped()) return false;
         radix_pass(keyed, other, pass * digit_bits);
         keyed.swap(other);
     }
     runtime::parallel_for(alive.size(), part, [&](std::size_t i) { alive[i] = keyed[i].face; });
+    return !stopped();
 }
 
 void find_owners(const CollapseMesh& mesh, Pieces& pieces) {
@@ -95,16 +98,17 @@ void find_owners(const CollapseMesh& mesh, Pieces& pieces) {
 
 }  // namespace
 
-void cut_into_pieces(const CollapseMesh& mesh, std::size_t phase, std::size_t piece_faces,
-                     std::vector<std::uint32_t>& alive, Pieces& pieces) {
-    sort_along_curve(mesh, phase, alive);
-    const std::size_t count = (alive.size() + piece_faces - 1) / piece_faces;
+bool cut_into_pieces(const CollapseMesh& mesh, std::size_t phase, std::size_t piece_faces,
+                     const std::function<bool()>& stopped, std::vector<std::uint32_t>& alive, Pieces& pieces) {
     pieces.faces.clear();
+    if (!sort_along_curve(mesh, phase, stopped, alive)) return false;
+    const std::size_t count = (alive.size() + piece_faces - 1) / piece_faces;
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t begin = i * alive.size() / count, end = (i + 1) * alive.size() / count;
         pieces.faces.emplace_back(alive.data() + begin, end - begin);
     }
     find_owners(mesh, pieces);
+    return true;
 }
 
 void keep_in_one_piece(const CollapseMesh& mesh, const std::vector<std::uint32_t>& alive, Pieces& pieces) {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct Pieces {
 };
 
 /// Sorts `alive` along a Morton curve whose cells lie elsewhere in every phase, so that borders between pieces do not
-/// stay borders; pieces are runs of about `piece_faces` of it. They live as long as `alive` stays as it is.
-void cut_into_pieces(const CollapseMesh& mesh, std::size_t phase, std::size_t piece_faces,
-                     std::vector<std::uint32_t>& alive, Pieces& pieces);
+/// stay borders; pieces are runs of about `piece_faces` of it. They live as long as `alive` stays as it is. False:
+/// stopped; then the faces in `alive` are the same, but there are no pieces.
+bool cut_into_pieces(const CollapseMesh& mesh, std::size_t phase, std::size_t piece_faces,
+                     const std::function<bool()>& stopped, std::vector<std::uint32_t>& alive, Pieces& pieces);
 
 /// One piece with all the faces.
 void keep_in_one_piece(const CollapseMesh& mesh, const std::vector<std::uint32_t>& alive, Pieces& pieces);

@@ -5,8 +5,10 @@
 #include "flow/project.h"
 #include "flow/quality.h"
 #include "flow/regularities_report.h"
+#include "flow/rough_planes.h"
 #include "flow/smooth_borders.h"
 #include "partition/border_measure.h"
+#include "runtime/parallel.h"
 #include "surface/surface.h"
 
 #include <algorithm>
@@ -55,11 +57,77 @@ Region describe_region(const mesh::WorkMesh& mesh, std::size_t r, const FinalSur
 void smooth(const FlowInput& input, FlowResult& flow, partition::RegionFaces& regions,
             std::vector<FinalSurface>& surfaces, Segmentation& result) {
     result.borders_before = partition::measure_borders(input.mesh, flow.labels);
-    if (smooth_borders(input, flow, surfaces)) {
-        regions = partition::region_faces(flow.labels, flow.regions);
-        surfaces = final_surfaces(input, regions, flow);
-    }
+    result.borders_after = result.borders_before;
+    if (!smooth_borders(input, flow, surfaces)) return;
+    regions = partition::region_faces(flow.labels, flow.regions);
+    surfaces = final_surfaces(input, regions, flow);
     result.borders_after = partition::measure_borders(input.mesh, flow.labels);
+}
+
+/// A result that lacks nothing else than this is partial too.
+void project(const FlowInput& input, const std::vector<FinalSurface>& surfaces, FlowResult& flow,
+             Segmentation& result) {
+    try {
+        result.projected = projected_positions(input, flow.labels, surfaces);
+    } catch (const runtime::Stopped& stopped) {
+        flow.partial = true;
+        flow.stop = stopped.deadline ? StopReason::deadline : StopReason::cancelled;
+    }
+}
+
+/// What the flow tells about itself, and the labels.
+void hand_over(const FlowInput& input, FlowResult&& flow, double squared_distance, Segmentation& result) {
+    const mesh::WorkMesh& mesh = input.mesh;
+    result.energy.total = result.energy.distance + input.options.weight * result.energy.normal;
+    result.rms = std::sqrt(squared_distance / std::max(mesh.total_area, 1e-300)) / mesh.frame.diagonal;
+    result.stop = flow.stop;
+    result.partial = flow.partial;
+    result.noise = flow.noise / mesh.frame.diagonal;
+    result.input = mesh.report;
+    result.history = std::move(flow.history);
+    result.energies = std::move(flow.energies);
+    result.labels = mesh::labels_to_input(mesh, flow.labels);
+    std::vector<std::size_t> faces(result.regions.size(), 0);  // regions are large, and labels in any order
+    for (std::size_t f = 0; f < result.labels.size(); ++f) {
+        const std::int32_t label = result.labels[f];
+        if (label < 0) {
+            result.unlabelled.push_back(static_cast<std::uint32_t>(f));
+        } else {
+            ++faces[static_cast<std::size_t>(label)];  // duplicates and degenerate faces count too
+        }
+    }
+    for (std::size_t r = 0; r < faces.size(); ++r) result.regions[r].faces = faces[r];
+}
+
+/// Of a flow that was stopped among its leaves, perhaps a face in twenty: planes, and figures from a few faces.
+Segmentation finish_with_planes(const FlowInput& input, FlowResult&& flow) {
+    const mesh::UnitFrame& frame = input.mesh.frame;
+    Segmentation result;
+    const std::vector<RoughPlane> planes = rough_planes(input.mesh, flow.labels, flow.regions);
+    result.regions.resize(flow.regions);
+    runtime::parallel_for(flow.regions, 256, [&](std::size_t r) {
+        const RoughPlane& plane = planes[r];
+        Region& region = result.regions[r];
+        region.id = region.surface_id = static_cast<std::int32_t>(r);
+        region.surface.axis = to_array(plane.normal);
+        region.surface.point = to_array(frame.to_input(plane.point));
+        region.surface.coefficients = surface::to_coefficients(region.surface);
+        region.area = plane.area / (frame.scale * frame.scale);
+        region.rms = std::sqrt(plane.squared_distance / std::max(plane.area, 1e-300)) / frame.diagonal;
+        region.max = plane.max_distance / frame.diagonal;
+        region.energy = plane.distance_energy + input.options.weight * plane.normal_energy;
+        region.valid = plane.agrees;
+    });
+    double squared = 0;
+    for (std::size_t r = 0; r < flow.regions; ++r) {
+        result.energy.distance += planes[r].distance_energy;
+        result.energy.normal += planes[r].normal_energy;
+        squared += planes[r].squared_distance;
+        result.max = std::max(result.max, result.regions[r].max);
+    }
+    flow.partial = true;
+    hand_over(input, std::move(flow), squared, result);
+    return result;
 }
 
 }  // namespace
@@ -69,6 +137,8 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
     const Options& options = input.options;
     Segmentation result;
     unify_polygons(mesh, flow);
+    if (flow.surfaces.empty() && flow.regions > most_rough_fits && input.control.should_stop())
+        return finish_with_planes(input, std::move(flow));
     partition::RegionFaces regions = partition::region_faces(flow.labels, flow.regions);
     std::vector<FinalSurface> surfaces = final_surfaces(input, regions, flow);
     const bool whole = !flow.partial && !input.control.should_stop();
@@ -96,24 +166,8 @@ Segmentation finish(const FlowInput& input, FlowResult&& flow) {
         result.max = std::max(result.max, region.max);
         result.regions.push_back(region);
     }
-    result.energy.total = result.energy.distance + options.weight * result.energy.normal;
-    result.rms = std::sqrt(squared / std::max(mesh.total_area, 1e-300)) / mesh.frame.diagonal;
-    result.stop = flow.stop;
-    result.partial = flow.partial;
-    result.noise = flow.noise / mesh.frame.diagonal;
-    result.input = mesh.report;
-    result.history = std::move(flow.history);
-    result.energies = std::move(flow.energies);
-    result.labels = mesh::labels_to_input(mesh, flow.labels);
-    for (std::size_t f = 0; f < result.labels.size(); ++f) {
-        const std::int32_t label = result.labels[f];
-        if (label < 0) {
-            result.unlabelled.push_back(static_cast<std::uint32_t>(f));
-        } else {
-            ++result.regions[static_cast<std::size_t>(label)].faces;  // duplicates and degenerate faces count too
-        }
-    }
-    if (options.project && whole) result.projected = projected_positions(input, flow.labels, surfaces);
+    if (options.project && whole) project(input, surfaces, flow, result);
+    hand_over(input, std::move(flow), squared, result);
     return result;
 }
 

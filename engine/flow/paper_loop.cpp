@@ -282,7 +282,7 @@ std::vector<partition::MergeCandidate> VariationalLoop::merge_candidates() {
 }
 
 partition::MergeCandidate VariationalLoop::merge_candidate(std::uint32_t a, std::uint32_t b) const {
-    const auto fit = partition::fit_union(mesh_, mergeable(a), mergeable(b), policy_.fit);
+    const auto fit = partition::fit_union(mesh_, mergeable(a), mergeable(b), policy_.fit, *control_);
     return {{std::min(a, b), std::max(a, b)}, fit.total - state_.fits[a].total - state_.fits[b].total, fit.valid};
 }
 

@@ -68,13 +68,14 @@ std::vector<std::uint32_t> first_at_position(const mesh::WorkMesh& mesh) {
 }
 
 VertexLabels vertex_labels(const mesh::WorkMesh& mesh, const partition::Labels& labels,
-                           const std::vector<std::uint32_t>& first) {
+                           const std::vector<std::uint32_t>& first, const runtime::RunControl& control) {
     VertexLabels result;
     result.begin.assign(mesh.vertex_count() + 1, 0);
     for (const auto& face : mesh.faces) {
         for (const std::uint32_t v : face) ++result.begin[first[v]];
     }
     runtime::exclusive_scan(result.begin);
+    control.check();
     result.label.resize(3 * mesh.face_count());
     std::vector<std::uint32_t> next(result.begin.begin(), result.begin.end() - 1);
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -85,6 +86,7 @@ VertexLabels vertex_labels(const mesh::WorkMesh& mesh, const partition::Labels& 
             result.label[end++] = labels[f];
         }
     }
+    control.check();
     std::uint32_t filled = 0;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
         const auto from = result.label.begin() + result.begin[v], to = result.label.begin() + next[v];
@@ -201,17 +203,23 @@ bool joint_projection(std::span<const SurfaceProjector* const> surfaces, const V
 std::vector<double> projected_positions(const FlowInput& input, const partition::Labels& labels,
                                         const std::vector<FinalSurface>& surfaces) {
     const mesh::WorkMesh& mesh = input.mesh;
+    input.control.check();
     std::vector<double> projected(3 * mesh.report.vertices, 0);
     if (mesh.vertex_count() == 0) return projected;
     const VertexProjection project(surfaces, input.options.project_joint, inflated_box(mesh));
     const std::vector<std::uint32_t> first = first_at_position(mesh);
-    const VertexLabels around = vertex_labels(mesh, labels, first);
-    runtime::parallel_for(mesh.vertex_count(), grain, [&](std::size_t v) {
-        const Vec3 p = mesh.frame.to_input(project(mesh.positions[v], around.of(first[v])));
-        double* out = &projected[3 * std::size_t{mesh.input_vertex[v]}];
-        out[0] = p.x;
-        out[1] = p.y;
-        out[2] = p.z;
+    const VertexLabels around = vertex_labels(mesh, labels, first, input.control);
+    runtime::parallel_blocks(mesh.vertex_count(), grain, [&](std::size_t begin, std::size_t end) {
+        std::size_t polls = 0;  // a foot point on a general quadric takes microseconds
+        input.control.check();
+        for (std::size_t v = begin; v < end; ++v) {
+            input.control.check_often(polls);
+            const Vec3 p = mesh.frame.to_input(project(mesh.positions[v], around.of(first[v])));
+            double* out = &projected[3 * std::size_t{mesh.input_vertex[v]}];
+            out[0] = p.x;
+            out[1] = p.y;
+            out[2] = p.z;
+        }
     });
     return projected;
 }

@@ -40,7 +40,7 @@ bool joint_projection(std::span<const SurfaceProjector* const> surfaces, const V
 /// to the mean of its foot points (the paper), or with Options::project_joint to the nearest point on all of their
 /// surfaces, if there is one near. Vertices at one position (stitched borders) stay together. What would leave the
 /// bounding box, enlarged by a hundredth of its diagonal, stays where it is. Vertices of no working face are 0: see
-/// UnusedVertices.
+/// UnusedVertices. Throws Stopped.
 std::vector<double> projected_positions(const FlowInput& input, const partition::Labels& labels,
                                         const std::vector<FinalSurface>& surfaces);
 

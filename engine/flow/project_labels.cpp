@@ -97,10 +97,14 @@ std::size_t connect_labels(const partition::Passage& passage, partition::Labels&
     flood_unlabelled(passage, labels, control);
     const auto highest = labels.empty() ? labels.end() : std::max_element(labels.begin(), labels.end());
     const std::int32_t fresh = labels.empty() ? 0 : *highest + 1;
+    bool unreached = false;
     for (std::size_t f = 0; f < labels.size(); ++f) {
-        if (labels[f] == unlabelled && passage.is_active(f)) labels[f] = fresh;
+        if (labels[f] != unlabelled || !passage.is_active(f)) continue;
+        labels[f] = fresh;
+        unreached = true;
     }
-    return partition::connected_parts(passage, labels);
+    // Waves leave parts connected: they need a number only, the one that connected_parts() would give.
+    return unreached ? partition::connected_parts(passage, labels) : partition::compact(labels);
 }
 
 }  // namespace quadseg::flow

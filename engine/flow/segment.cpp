@@ -11,29 +11,20 @@
 #include "mesh/features.h"
 #include "mesh/work_mesh.h"
 #include "runtime/parallel.h"
+#include "runtime/resources.h"
 #include "runtime/run_control.h"
 
 #include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
-#include <sys/resource.h>
 
 namespace quadseg {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::size_t peak_resident_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
+using runtime::seconds_since;
 
 int threads_of(const Context* context) {
     const int wanted = context != nullptr ? context->threads() : 0;
@@ -128,7 +119,7 @@ Segmentation segment(const MeshView& mesh, const Options& options, Context* cont
     if (result.partial && context) {
         result.stop = context->cancelled() ? StopReason::cancelled : StopReason::deadline;
     }
-    result.peak_bytes = peak_resident_bytes();
+    result.peak_bytes = runtime::peak_resident_bytes();
     return result;
 }
 

@@ -8,11 +8,11 @@
 namespace quadseg::partition {
 
 quadric::RegionFit fit_union(const mesh::WorkMesh& mesh, const MergeableRegion& a, const MergeableRegion& b,
-                             const FitFunction& fit) {
+                             const FitFunction& fit, const runtime::RunControl& control) {
     std::vector<std::uint32_t> faces(a.faces.size() + b.faces.size());
     std::merge(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), faces.begin());
     GatheredRegion gathered;
-    gather(mesh, faces.data(), faces.size(), gathered);
+    gather(mesh, faces.data(), faces.size(), gathered, &control);
     return fit(gathered.soup());
 }
 
@@ -40,7 +40,7 @@ std::vector<MergeCandidate> MergeCandidates::evaluate(const mesh::WorkMesh& mesh
         control.check();
         MergeCandidate& c = candidates[unknown[i]];
         const MergeableRegion &a = region(c.pair.a), &b = region(c.pair.b);
-        const quadric::RegionFit common = fit_union(mesh, a, b, fit);
+        const quadric::RegionFit common = fit_union(mesh, a, b, fit, control);
         c.increase = common.total - (a.energy + b.energy);
         c.valid = common.valid;
         if (!(c.increase < std::numeric_limits<double>::max())) {  // also NaN

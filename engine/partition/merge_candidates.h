@@ -32,7 +32,7 @@ struct MergeableRegion {
 
 /// Fits the union of two regions.
 quadric::RegionFit fit_union(const mesh::WorkMesh& mesh, const MergeableRegion& a, const MergeableRegion& b,
-                             const FitFunction& fit);
+                             const FitFunction& fit, const runtime::RunControl& control);
 
 /// Evaluates pairs in parallel and remembers them by the stamps of their regions, so that only pairs of changed regions
 /// are fitted again.

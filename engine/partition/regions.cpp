@@ -63,7 +63,18 @@ void copy_faces(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::siz
 
 }  // namespace
 
-void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out) {
+void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out,
+            const runtime::RunControl* control) {
+    constexpr std::size_t step = 65536;
+    if (control != nullptr && count > step) {
+        out.clear();
+        out.reserve(count);
+        for (std::size_t begin = 0; begin < count; begin += step) {
+            control->check();
+            append(mesh, faces + begin, std::min(step, count - begin), out);
+        }
+        return;
+    }
     out.corners.resize(3 * count);
     out.normals.resize(count);
     out.areas.resize(count);
@@ -86,7 +97,7 @@ std::vector<quadric::RegionFit> fit_regions(const mesh::WorkMesh& mesh, const Re
     polled.poll = [&control] { control.check(); };
     const auto fit = [&](std::size_t r, GatheredRegion& scratch) {
         control.check();
-        gather(mesh, regions.face.data() + regions.begin[r], regions.size(r), scratch);
+        gather(mesh, regions.face.data() + regions.begin[r], regions.size(r), scratch, &control);
         fits[r] = quadric::fit_region(scratch.soup(), polled);
     };
     // Runs of small regions share a task; a large one has a task of its own, so that no task waits behind it.

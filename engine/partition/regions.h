@@ -34,13 +34,21 @@ struct GatheredRegion {
     std::vector<Vec3> corners, normals;
     std::vector<double> areas;
     quadric::TriangleSoup soup() const noexcept { return {corners, normals, areas}; }
+    void clear() noexcept {
+        corners.clear();
+        normals.clear();
+        areas.clear();
+    }
     void reserve(std::size_t faces) {
         corners.reserve(3 * faces);
         normals.reserve(faces);
         areas.reserve(faces);
     }
 };
-void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out);
+/// The arrays of a million faces are 100 MB, of which half the time is the system's to give them: with a control, it is
+/// asked on the way.
+void gather(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out,
+            const runtime::RunControl* control = nullptr);
 /// Adds to what is there.
 void append(const mesh::WorkMesh& mesh, const std::uint32_t* faces, std::size_t count, GatheredRegion& out);
 

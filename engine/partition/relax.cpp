@@ -271,7 +271,7 @@ class Relaxer {
             stale_[r] = 0;
             if (moments_known && fit_plane_from_moments(r)) return;
             GatheredRegion& gathered = gathered_.local();
-            gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered);
+            gather(mesh_, regions_.face.data() + regions_.begin[r], regions_.size(r), gathered, &control_);
             result_.fits[r] = quadric::fit_region(gathered.soup(), fit);
         });
     }

@@ -48,6 +48,7 @@ FacePacks::FacePacks(const TriangleSoup& region, bool with_moments, const std::f
     Vec3 reference, first;
     double second = 0;
     for (std::size_t t = 0; t < faces_; ++t) {
+        if (t % (polled_packs * lanes) == 0) poll_packs();
         const double a = region.areas[t];
         if (!takes_part(a)) continue;
         const Vec3* const corner = &region.corners[3 * t];

@@ -248,5 +248,21 @@ TEST(ConnectLabels, OrphansAndGapsJoinTheirNeighbours) {
     EXPECT_EQ(flow::connect_labels(passage, none, 0.25, control), 1U);
 }
 
+/// The parts that grow into what was dropped stay connected, so that their numbers are all that is left to do.
+TEST(ConnectLabels, NumbersConnectedPartsByFirstFace) {
+    const mesh::WorkMesh mesh = work_mesh(bumpy_grid(40));
+    const partition::Passage passage{&mesh, nullptr, {}};
+    const runtime::RunControl control(nullptr);
+    for (const std::size_t step : {7U, 61U, 400U}) {
+        Labels labels;
+        for (std::size_t f = 0; f < mesh.face_count(); ++f)
+            labels.push_back(f % step == 0 ? 9 : static_cast<std::int32_t>(f / step * 37 % 5) - 1);
+        const std::size_t count = flow::connect_labels(passage, labels, 0.25, control);
+        Labels parts = labels;
+        EXPECT_EQ(partition::connected_parts(passage, parts), count);
+        EXPECT_EQ(parts, labels);
+    }
+}
+
 }  // namespace
 }  // namespace quadseg::test

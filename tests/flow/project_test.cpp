@@ -146,6 +146,19 @@ TEST(Project, NoisyVerticesComeBackToTheSurfaces) {
     }
 }
 
+/// It took up to 50 ms of a million faces after a stop.
+TEST(Project, Stops) {
+    const mesh::WorkMesh mesh =
+        mesh::build_work_mesh(datasets::generate("plate", 2000).mesh.view(), runtime::RunControl(nullptr));
+    Context context;
+    context.cancel();
+    const runtime::RunControl stopped(&context);
+    const Options options = projecting(false);
+    const partition::Labels labels(mesh.face_count(), 0);
+    EXPECT_THROW(flow::projected_positions({mesh, nullptr, options, stopped}, labels, {final_plane({}, {0, 0, 1})}),
+                 runtime::Stopped);
+}
+
 TEST(Project, NothingLeavesTheInflatedBox) {
     const test::Shape bumps = test::bumpy_grid(30);
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};

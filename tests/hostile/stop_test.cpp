@@ -227,6 +227,12 @@ INSTANTIATE_TEST_SUITE_P(Jobs, Stops,
                                                      o.preset = Preset::paper;
                                                      o.regions = 20;
                                                      o.coarse = 10000;
+                                                 }},
+                                         StopJob{"coarse", "plate", 0, [](Options& o) { o.coarse = 10000; }},
+                                         StopJob{"hierarchical", "plate", 0,
+                                                 [](Options& o) {
+                                                     o.preset = Preset::paper;
+                                                     o.method = Method::hierarchical;
                                                  }}),
                          [](const auto& one) { return one.param.name; });
 

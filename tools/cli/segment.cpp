@@ -1,6 +1,7 @@
 #include <quadseg/error.h>
 #include <quadseg/io.h>
 
+#include "runtime/resources.h"
 #include "tools/cli/colors.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/exit_code.h"
@@ -16,22 +17,12 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <sys/resource.h>
 
 namespace quadseg::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::size_t peak_resident_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
+using runtime::seconds_since;
 
 void write_files(const SegmentArguments& a, const Mesh& mesh, const Segmentation& s) {
     const std::string base = a.folder + "/";
@@ -102,7 +93,7 @@ int run_segment(SegmentArguments& a) {
     result.seconds.read = read;
     result.seconds.write = seconds_since(write_start);
     result.seconds.total = seconds_since(start);
-    result.peak_bytes = std::max(result.peak_bytes, peak_resident_bytes());
+    result.peak_bytes = std::max(result.peak_bytes, runtime::peak_resident_bytes());
     // Last, so that a folder with a result.json is complete.
     const std::string json = indented(result_json(a.mesh, mesh, a.options, result));
     write_text(a.folder + "/result.json", json);
