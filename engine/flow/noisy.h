@@ -7,7 +7,8 @@
 namespace quadseg::flow {
 
 /// On the denoised mesh: leaves → merging by description length; on the raw one: relaxation with a price on border
-/// length → merging by complete fits → clean-up. Finds the number of regions itself (options.regions is not looked at).
+/// length → merging by complete fits → clean-up. Faces count by their evidence (flow/evidence_areas.h). Finds the
+/// number of regions itself (options.regions is not looked at).
 FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise);
 
 }  // namespace quadseg::flow
