@@ -125,22 +125,19 @@ void extend_to_borders(const Scene& scene, double largest_step, Explained& state
     };
     // All threads look for faces of regions that have free ones beside them.
     constexpr std::size_t block = 16384;
-    std::vector<std::vector<std::uint32_t>> ends((state.region.size() + block - 1) / block);
-    runtime::parallel_blocks(state.region.size(), block, [&](std::size_t begin, std::size_t end) {
+    const auto find_ends = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& ends) {
         scene.control.check();
         const auto is_free = [&](std::int32_t g) { return g >= 0 && state.region[static_cast<std::size_t>(g)] < 0; };
         for (std::size_t f = begin; f < end; ++f) {
             const auto& neighbors = scene.mesh.neighbors[f];
             if (state.region[f] >= 0 && std::any_of(neighbors.begin(), neighbors.end(), is_free))
-                ends[begin / block].push_back(static_cast<std::uint32_t>(f));
+                ends.push_back(static_cast<std::uint32_t>(f));
         }
-    });
+    };
     std::size_t polls = 0;
-    for (const std::vector<std::uint32_t>& part : ends) {
-        for (const std::uint32_t f : part) {
-            scene.control.check_often(polls);
-            offer_neighbours(f);
-        }
+    for (const std::uint32_t f : runtime::collect_blocks<std::uint32_t>(state.region.size(), block, find_ends)) {
+        scene.control.check_often(polls);
+        offer_neighbours(f);
     }
     while (!offers.empty()) {
         scene.control.check_often(polls);

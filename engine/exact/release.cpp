@@ -69,40 +69,36 @@ std::vector<RegionBorder> measure_borders(const Scene& scene, const Explained& s
         std::uint32_t face;
         int k;
     };
-    std::vector<std::vector<Edge>> edges((state.region.size() + block - 1) / block);
-    runtime::parallel_blocks(state.region.size(), block, [&](std::size_t begin, std::size_t end) {
+    const auto find_edges = [&](std::size_t begin, std::size_t end, std::vector<Edge>& edges) {
         scene.control.check();
         for (std::size_t f = begin; f < end; ++f) {
             if (state.region[f] < 0) continue;
             for (int k = 0; k < 3; ++k) {
                 const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
                 if (g < 0 || state.region[static_cast<std::size_t>(g)] != state.region[f])
-                    edges[begin / block].push_back({static_cast<std::uint32_t>(f), k});
+                    edges.push_back({static_cast<std::uint32_t>(f), k});
             }
         }
-    });
+    };
     std::vector<double> area(borders.size(), 0);
     mesh::add_by_group(state.region, scene.mesh.areas, area);
     for (std::size_t r = 0; r < borders.size(); ++r) borders[r].area = area[r];
     std::size_t polls = 0;
-    for (const std::vector<Edge>& part : edges) {
-        for (const auto& [f, k] : part) {
-            scene.control.check_often(polls);
-            RegionBorder& border = borders[static_cast<std::size_t>(state.region[f])];
-            const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
-            const double length = norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
-            border.perimeter += length;
-            if (g < 0) continue;
-            const double fold = dihedral(scene.mesh, f, static_cast<std::size_t>(g));
-            if (fold > gentle_most) continue;
-            const std::int32_t other = state.region[static_cast<std::size_t>(g)];
-            if (other < 0) {
-                border.to_free += length;
-                if (fold <= smooth_most) border.smoothly_to_free += length;
-            } else if (fold > gentle_least &&
-                       state.surface[static_cast<std::size_t>(other)].type == SurfaceType::plane) {
-                border.to_strips += length;
-            }
+    for (const auto& [f, k] : runtime::collect_blocks<Edge>(state.region.size(), block, find_edges)) {
+        scene.control.check_often(polls);
+        RegionBorder& border = borders[static_cast<std::size_t>(state.region[f])];
+        const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
+        const double length = norm(scene.mesh.corner(f, (k + 1) % 3) - scene.mesh.corner(f, k));
+        border.perimeter += length;
+        if (g < 0) continue;
+        const double fold = dihedral(scene.mesh, f, static_cast<std::size_t>(g));
+        if (fold > gentle_most) continue;
+        const std::int32_t other = state.region[static_cast<std::size_t>(g)];
+        if (other < 0) {
+            border.to_free += length;
+            if (fold <= smooth_most) border.smoothly_to_free += length;
+        } else if (fold > gentle_least && state.surface[static_cast<std::size_t>(other)].type == SurfaceType::plane) {
+            border.to_strips += length;
         }
     }
     return borders;

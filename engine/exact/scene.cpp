@@ -44,8 +44,7 @@ void find_depths(Scene& scene) {
     constexpr std::uint16_t unknown = 0xffff;
     scene.depth.assign(mesh.face_count(), unknown);
     constexpr std::size_t block = 16384;
-    std::vector<std::vector<std::uint32_t>> edges((mesh.face_count() + block - 1) / block);
-    runtime::parallel_blocks(mesh.face_count(), block, [&](std::size_t begin, std::size_t end) {
+    const auto find_edges = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& edges) {
         scene.control.check();
         for (std::size_t f = begin; f < end; ++f) {
             bool edge = scene.in_sure_plane(f) || scene.creases[f] != 0;
@@ -54,21 +53,15 @@ void find_depths(Scene& scene) {
             }
             if (!edge) continue;
             scene.depth[f] = 0;
-            if (!scene.in_sure_plane(f)) edges[begin / block].push_back(static_cast<std::uint32_t>(f));
+            if (!scene.in_sure_plane(f)) edges.push_back(static_cast<std::uint32_t>(f));
         }
-    });
+    };
     // Ring by ring: who reaches a face first is chance, in which ring it lies is not.
     constexpr std::size_t grain = 2048;
-    std::vector<std::uint32_t> ring;
-    for (std::uint16_t d = 1;; d = static_cast<std::uint16_t>(std::min<int>(d + 1, unknown - 1))) {
+    std::vector<std::uint32_t> ring = runtime::collect_blocks<std::uint32_t>(mesh.face_count(), block, find_edges);
+    for (std::uint16_t d = 1; !ring.empty(); d = static_cast<std::uint16_t>(std::min<int>(d + 1, unknown - 1))) {
         scene.control.check();
-        ring.clear();
-        for (const std::vector<std::uint32_t>& part : edges) ring.insert(ring.end(), part.begin(), part.end());
-        if (ring.empty()) break;
-        edges.resize((ring.size() + grain - 1) / grain);
-        runtime::parallel_blocks(ring.size(), grain, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::uint32_t>& next = edges[begin / grain];
-            next.clear();
+        const auto reach = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& next) {
             for (std::size_t i = begin; i < end; ++i) {
                 for (const std::int32_t neighbor : mesh.neighbors[ring[i]]) {
                     if (neighbor < 0) continue;
@@ -80,7 +73,8 @@ void find_depths(Scene& scene) {
                     next.push_back(static_cast<std::uint32_t>(g));
                 }
             }
-        });
+        };
+        ring = runtime::collect_blocks<std::uint32_t>(ring.size(), grain, reach);
     }
 }
 

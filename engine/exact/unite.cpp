@@ -53,10 +53,8 @@ void merge_equal(std::vector<Border>& borders) {
 
 std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
     constexpr std::size_t block = 16384;
-    std::vector<std::vector<Border>> found((state.region.size() + block - 1) / block);
-    runtime::parallel_blocks(state.region.size(), block, [&](std::size_t begin, std::size_t end) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Border>& own) {
         scene.control.check();
-        std::vector<Border>& own = found[begin / block];
         for (std::size_t f = begin; f < end; ++f) {
             for (const std::int32_t g : scene.mesh.neighbors[f]) {
                 if (g < 0) continue;
@@ -65,9 +63,8 @@ std::vector<Border> borders_of(const Scene& scene, const Explained& state) {
             }
         }
         merge_equal(own);
-    });
-    std::vector<Border> borders;
-    for (const std::vector<Border>& own : found) borders.insert(borders.end(), own.begin(), own.end());
+    };
+    std::vector<Border> borders = runtime::collect_blocks<Border>(state.region.size(), block, find);
     merge_equal(borders);
     return borders;
 }

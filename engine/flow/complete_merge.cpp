@@ -69,8 +69,7 @@ class CompleteMerger {
     }
 
     void find_pairs() {
-        std::vector<std::vector<Pair>> found((labels_.size() + face_grain - 1) / face_grain);
-        runtime::parallel_blocks(labels_.size(), face_grain, [&](std::size_t begin, std::size_t end) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
             control_.check();
             for (std::size_t f = begin; f < end; ++f) {
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -79,13 +78,12 @@ class CompleteMerger {
                     const std::int32_t a = labels_[f], b = labels_[static_cast<std::size_t>(g)];
                     if (a < 0 || b <= a) continue;
                     const auto& v = mesh_.faces[f];
-                    found[begin / face_grain].push_back(
-                        {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                         norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]])});
+                    found.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                                     norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]])});
                 }
             }
-        });
-        for (const auto& part : found) pairs_.insert(pairs_.end(), part.begin(), part.end());
+        };
+        pairs_ = runtime::collect_blocks<Pair>(labels_.size(), face_grain, find);
         unite_equal_pairs();
     }
 

@@ -106,8 +106,8 @@ class DividedSearch {
         // Facets with two different ones beside them, all of more than a triangle …
         std::vector<Ends> beside(facets_.count());
         constexpr std::size_t block = 16384;
-        std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> pairs((labels_.size() + block - 1) / block);
-        runtime::parallel_blocks(labels_.size(), block, [&](std::size_t begin, std::size_t end) {
+        using Pair = std::pair<std::int32_t, std::int32_t>;
+        const auto find_pairs = [&](std::size_t begin, std::size_t end, std::vector<Pair>& pairs) {
             control_.check();
             for (std::size_t f = begin; f < end; ++f) {
                 const std::int32_t own = facets_.of_face[f];
@@ -118,13 +118,12 @@ class DividedSearch {
                     if (own == other || is_triangle(other) || !folds_gently(f, static_cast<std::size_t>(g)) ||
                         !folds_clearly(f, static_cast<std::size_t>(g)))
                         continue;
-                    pairs[begin / block].emplace_back(own, other);
+                    pairs.emplace_back(own, other);
                 }
             }
-        });
-        for (const auto& part : pairs) {
-            for (const auto& [own, other] : part) beside[static_cast<std::size_t>(own)].add(other);
-        }
+        };
+        for (const auto& [own, other] : runtime::collect_blocks<Pair>(labels_.size(), block, find_pairs))
+            beside[static_cast<std::size_t>(own)].add(other);
         const auto in_row = [&](const Ends& ends) { return ends.first == many || ends.second != none; };
         if (std::none_of(beside.begin(), beside.end(), in_row)) return {};
         // … are a row where they have vertices that are no corners of theirs.

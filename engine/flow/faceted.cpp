@@ -92,23 +92,20 @@ class FacetedParts {
         const auto ends = [&](std::size_t f, std::int32_t g) {
             return g < 0 || group[static_cast<std::size_t>(g)] != group[f];
         };
-        std::vector<std::vector<std::uint32_t>> faces((group.size() + block - 1) / block);
-        runtime::parallel_blocks(group.size(), block, [&](std::size_t begin, std::size_t end) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& faces) {
             control_.check();
             for (std::size_t f = begin; f < end; ++f) {
                 const auto& neighbors = mesh_.neighbors[f];
                 if (group[f] >= 0 && (ends(f, neighbors[0]) || ends(f, neighbors[1]) || ends(f, neighbors[2])))
-                    faces[begin / block].push_back(static_cast<std::uint32_t>(f));
+                    faces.push_back(static_cast<std::uint32_t>(f));
             }
-        });
+        };
         std::size_t polls = 0;
-        for (const std::vector<std::uint32_t>& part : faces) {
-            for (const std::uint32_t f : part) {
-                control_.check_often(polls);
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const std::int32_t g = mesh_.neighbors[f][k];
-                    if (ends(f, g)) visit(f, k, g);
-                }
+        for (const std::uint32_t f : runtime::collect_blocks<std::uint32_t>(group.size(), block, find)) {
+            control_.check_often(polls);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::int32_t g = mesh_.neighbors[f][k];
+                if (ends(f, g)) visit(f, k, g);
             }
         }
     }

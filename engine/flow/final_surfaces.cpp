@@ -3,6 +3,7 @@
 #include "exact/tolerances.h"
 #include "flow/methods.h"
 #include "flow/region_sample.h"
+#include "flow/rough_planes.h"
 #include "runtime/parallel.h"
 #include "surface/blend.h"
 #include "surface/constrained_fit.h"
@@ -194,7 +195,7 @@ class TypeChoice {
 };
 
 /// Faces that the surfaces of a stopped call are made of, all regions together; below so many a region, planes.
-constexpr std::size_t rough_faces = 4096, least_rough_fit = 64;
+constexpr std::size_t least_rough_fit = 64, rough_faces = most_rough_fits * least_rough_fit;
 
 class Finisher {
   public:
@@ -363,7 +364,7 @@ class Finisher {
         const auto freedom = static_cast<std::size_t>(surface::degrees_of_freedom(fit.surface.type));
         const bool plane = fit.ok && fit.surface.type == SurfaceType::plane;
         // Noise turns the mesh's normals as far from the right surface as from the region's quadric.
-        const double turned = free_form ? 0 : normal_deviation(own, few.all());
+        const double turned = judged && !free_form ? normal_deviation(own, few.all()) : 0;
         if (judged && (!fit.ok || !(fit.rms <= 2 * tolerance) ||
                        (!plane && (few.points.size() < 2 * freedom + 2 || wrong_normals(fit.surface, few, turned))))) {
             SurfaceFit trimmed = free_form ? mostly_exact(few, tolerance) : SurfaceFit{};

@@ -87,7 +87,7 @@ class NoisyFlow {
         try {
             grow();
             if (!result_.partial) merge_on_moments();
-            judge_by_raw_mesh();
+            if (!result_.partial) judge_by_raw_mesh();
             if (!result_.partial) relax();
             for (int round = 0; round < 2 && !result_.partial; ++round) {
                 merge_completely();
@@ -137,9 +137,8 @@ class NoisyFlow {
     void judge_by_raw_mesh() {
         weighed_.positions = mesh_.positions;
         weighed_.normals = mesh_.normals;
-        weighed_.areas = mesh_.areas;
-        weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
-        if (!result_.partial) measure();
+        weighed_.areas = evidence_areas(mesh_, mesh_.total_area, control_);
+        measure();
     }
 
     void measure() {

@@ -20,11 +20,8 @@ struct BorderFace {
 
 std::vector<BorderFace> border_faces(const Passage& passage, const Labels& labels, const runtime::RunControl& control) {
     constexpr std::size_t grain = 8192;
-    const std::size_t faces = labels.size();
-    std::vector<std::vector<BorderFace>> parts((faces + grain - 1) / grain);
-    runtime::parallel_blocks(faces, grain, [&](std::size_t begin, std::size_t end) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<BorderFace>& part) {
         control.check();
-        std::vector<BorderFace>& part = parts[begin / grain];
         for (std::size_t f = begin; f < end; ++f) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::int32_t g = passage.across(f, k);
@@ -33,9 +30,8 @@ std::vector<BorderFace> border_faces(const Passage& passage, const Labels& label
                 part.push_back({a, b, static_cast<std::uint32_t>(f)});
             }
         }
-    });
-    std::vector<BorderFace> all;
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    };
+    std::vector<BorderFace> all = runtime::collect_blocks<BorderFace>(labels.size(), grain, find);
     runtime::parallel_sort(all.begin(), all.end(),
                            [](const BorderFace& x, const BorderFace& y) { return x.key() < y.key(); });
     all.erase(std::unique(all.begin(), all.end(),

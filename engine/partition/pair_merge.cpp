@@ -296,11 +296,8 @@ std::vector<MergeRegion> measure_regions(const mesh::WorkMesh& mesh, const Label
 }
 
 std::vector<RegionPair> region_pairs(const Passage& passage, const Labels& labels, const runtime::RunControl& control) {
-    const std::size_t faces = labels.size();
-    std::vector<std::vector<std::uint64_t>> found((faces + face_grain - 1) / face_grain);
-    runtime::parallel_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& keys) {
         control.check();
-        std::vector<std::uint64_t>& keys = found[begin / face_grain];
         for (std::size_t f = begin; f < end; ++f) {
             if (labels[f] < 0) continue;
             const auto a = static_cast<std::uint32_t>(labels[f]);
@@ -313,10 +310,9 @@ std::vector<RegionPair> region_pairs(const Passage& passage, const Labels& label
         }
         std::sort(keys.begin(), keys.end());
         keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    });
-    std::vector<std::uint64_t> all;
-    for (const auto& keys : found) all.insert(all.end(), keys.begin(), keys.end());
-    if (found.size() > 1) {
+    };
+    std::vector<std::uint64_t> all = runtime::collect_blocks<std::uint64_t>(labels.size(), face_grain, find);
+    if (labels.size() > face_grain) {
         runtime::parallel_sort(all.begin(), all.end(), std::less<>());
         all.erase(std::unique(all.begin(), all.end()), all.end());
     }

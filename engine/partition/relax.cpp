@@ -277,9 +277,7 @@ class Relaxer {
     }
 
     std::vector<std::uint32_t> border_faces() const {
-        const std::size_t faces = labels_.size();
-        std::vector<std::vector<std::uint32_t>> found((faces + face_grain - 1) / face_grain);
-        runtime::parallel_blocks(faces, face_grain, [&](std::size_t begin, std::size_t end) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
             control_.check();
             for (std::size_t f = begin; f < end; ++f) {
                 const std::int32_t own = labels_[f];
@@ -290,14 +288,12 @@ class Relaxer {
                     // Between two regions that did not change nothing has become cheaper.
                     if (dirty_[static_cast<std::size_t>(own)] == 0 && dirty_[static_cast<std::size_t>(other)] == 0)
                         continue;
-                    found[begin / face_grain].push_back(static_cast<std::uint32_t>(f));
+                    found.push_back(static_cast<std::uint32_t>(f));
                     break;
                 }
             }
-        });
-        std::vector<std::uint32_t> border;
-        for (const auto& part : found) border.insert(border.end(), part.begin(), part.end());
-        return border;
+        };
+        return runtime::collect_blocks<std::uint32_t>(labels_.size(), face_grain, find);
     }
 
     std::vector<std::uint32_t> all_border_faces() {

@@ -55,6 +55,20 @@ T reduce_blocks(std::size_t count, std::size_t grain, T identity, const Body& bo
     return result;
 }
 
+/// What body(begin, end, out) appends to `out`, a block's beside the next one's: the same at any thread count.
+template <class T, class Body>
+std::vector<T> collect_blocks(std::size_t count, std::size_t grain, const Body& body) {
+    std::vector<std::vector<T>> parts((count + grain - 1) / grain);
+    parallel_blocks(count, grain, [&](std::size_t begin, std::size_t end) { body(begin, end, parts[begin / grain]); });
+    if (parts.size() == 1) return std::move(parts.front());
+    std::vector<T> all;
+    std::size_t size = 0;
+    for (const std::vector<T>& part : parts) size += part.size();
+    all.reserve(size);
+    for (const std::vector<T>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
 /// In place, each element replaced by the sum of those before it; returns the total.
 template <class T>
 T exclusive_scan(std::vector<T>& values) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "math/vec3.h"
+#include "quadric/pack.h"
 #include "surface/fit.h"
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace quadseg::surface {
 
-inline constexpr std::size_t lane_count = 8;
+inline constexpr std::size_t lane_count = quadric::lanes;
 
 class LocalPoints {
   public:

@@ -67,6 +67,21 @@ TEST(ReduceBlocks, JoinsInOrder) {
               7);
 }
 
+TEST(CollectBlocks, KeepsTheOrderOfTheIndices) {
+    const tbb::global_control more_than_cores(tbb::global_control::max_allowed_parallelism, 8);
+    for (const std::size_t count : {0U, 1U, 10U, 11U, 1000U}) {
+        std::vector<std::size_t> expected;
+        for (std::size_t i = 0; i < count; i += 3) expected.push_back(i);
+        EXPECT_EQ(collect_blocks<std::size_t>(count, 10,
+                                              [](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
+                                                  EXPECT_TRUE(out.empty());
+                                                  for (std::size_t i = begin; i < end; ++i)
+                                                      if (i % 3 == 0) out.push_back(i);
+                                              }),
+                  expected);
+    }
+}
+
 TEST(ExclusiveScan, GivesBeginsAndTotal) {
     std::vector<int> v{3, 0, 4, 1};
     EXPECT_EQ(exclusive_scan(v), 8);
