@@ -39,6 +39,10 @@ constexpr double organic_angle = 6;
 constexpr double regions_overshoot = 1.4;
 constexpr double default_crease = 30;
 
+double crease_degrees(const Options& options, double otherwise) noexcept {
+    return options.feature_angle > 0 ? options.feature_angle : otherwise;
+}
+
 /// Features of the simplified mesh: the edges where the fine mesh has features between the faces that two simplified
 /// faces stand for. Found afresh they would be too many: simplified fillets and small cylinders have sharp edges. Where
 /// no fine edge lies between the two, or few of them are features, the edge's own sharpness has a say.
@@ -107,24 +111,16 @@ struct CoarseResult {
 };
 
 /// None: the mesh cannot be simplified.
-std::optional<CoarseResult> segment_simplified(const FlowInput& input, std::size_t coarse_faces,
+std::optional<CoarseResult> segment_simplified(const FlowInput& input, const SimplifyFunction& simplify,
                                                const FlowFunction& flow_on_coarse) {
-    simplify::DecimateOptions options;
-    options.target_faces = coarse_faces;
-    options.feature_degrees = input.options.feature_angle > 0 ? input.options.feature_angle : default_crease;
-    // Left by Stopped: what is simplified so far would be thrown away.
-    options.should_stop = [&] {
-        input.control.check();
-        return false;
-    };
-    const simplify::Decimated decimated = simplify::decimate(input.mesh.positions, input.mesh.faces, options);
+    const simplify::Decimated decimated = simplify(input);
     const auto fine_faces = static_cast<double>(input.mesh.face_count());
     if (decimated.faces.empty() || static_cast<double>(decimated.faces.size()) > useful_share * fine_faces) return {};
 
     const mesh::WorkMesh mesh = build_simplified_mesh(input.mesh, decimated.positions, decimated.faces, input.control);
     std::optional<mesh::FeatureEdges> features;
     if (input.features != nullptr) {
-        features = transfer_features(input, decimated.face_map, mesh, options.feature_degrees);
+        features = transfer_features(input, decimated.face_map, mesh, crease_degrees(input.options, default_crease));
     }
     CoarseResult result;
     result.flow = flow_on_coarse({mesh, features ? &*features : nullptr, input.options, input.control});
@@ -143,13 +139,26 @@ std::size_t coarse_face_count(const Options& options, std::size_t faces) {
     return std::max(smallest_coarse, faces / faces_per_coarse_face);
 }
 
-FlowResult run_coarse(const FlowInput& input, std::size_t coarse_faces, const FlowFunction& flow_on_coarse,
+simplify::Decimated simplified(const FlowInput& input, const std::vector<Vec3>& positions, std::size_t faces,
+                               double crease) {
+    simplify::DecimateOptions options;
+    options.target_faces = faces;
+    options.feature_degrees = crease_degrees(input.options, crease);
+    // Left by Stopped: what is simplified so far would be thrown away.
+    options.should_stop = [&] {
+        input.control.check();
+        return false;
+    };
+    return simplify::decimate(positions, input.mesh.faces, options);
+}
+
+FlowResult run_coarse(const FlowInput& input, const SimplifyFunction& simplify, const FlowFunction& flow_on_coarse,
                       const RefineFunction& refine_on_fine) {
     const auto start = std::chrono::steady_clock::now();
     input.control.report(Phase::coarse, 0.2);
     std::optional<CoarseResult> coarse;
     try {
-        coarse = segment_simplified(input, coarse_faces, flow_on_coarse);
+        coarse = segment_simplified(input, simplify, flow_on_coarse);
     } catch (const runtime::Stopped&) {
         // The flow below stops at once with what it makes of that.
     } catch (const Error& error) {
@@ -178,6 +187,10 @@ FlowResult run_coarse(const FlowInput& input, std::size_t coarse_faces, const Fl
 
 namespace {
 
+SimplifyFunction simplify_to(std::size_t faces) {
+    return [faces](const FlowInput& fine) { return simplified(fine, fine.mesh.positions, faces, default_crease); };
+}
+
 int teleportations_on_coarse(const FlowInput& input, double energy) {
     const double angle = organic_angle * std::numbers::pi / 180;
     const bool organic = energy > input.options.weight * angle * angle * input.mesh.total_area;
@@ -204,7 +217,7 @@ FlowResult overshoot_and_merge(const FlowInput& input) {
 
 FlowResult run_paper_coarse(const FlowInput& input, std::size_t coarse_faces) {
     if (input.options.method == Method::hierarchical) return run_paper(input);  // merges from single faces up
-    return run_coarse(input, coarse_faces, overshoot_and_merge,
+    return run_coarse(input, simplify_to(coarse_faces), overshoot_and_merge,
                       [](const FlowInput& fine, const partition::Labels& labels) {
                           Options fewer = fine.options;
                           fewer.paper.teleportations = 0;
@@ -222,7 +235,7 @@ FlowResult run_fast_coarse(const FlowInput& input, std::size_t coarse_faces) {
     const auto on_fine = [&](const FlowInput& fine, const partition::Labels& labels) {
         return refine_fast(fine, options, labels);
     };
-    return run_coarse(input, coarse_faces, on_coarse, on_fine);
+    return run_coarse(input, simplify_to(coarse_faces), on_coarse, on_fine);
 }
 
 }  // namespace quadseg::flow

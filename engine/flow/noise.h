@@ -13,7 +13,8 @@ struct NoiseEstimate {
     double flat = 0;   ///< share of edges that are flatter than noise leaves them
 
     /// Above this normals are of little use and every decision needs an honest price of chance.
-    bool noisy() const noexcept { return sigma > 0.02 * edge; }
+    static constexpr double noisy_from = 0.02;  ///< σ/h
+    bool noisy() const noexcept { return sigma > noisy_from * edge; }
     /// The roughness may be that of a coarse tessellation: some edges show no noise at all.
     bool doubtful() const noexcept { return flat > 0.02; }
 };

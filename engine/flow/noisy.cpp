@@ -84,7 +84,7 @@ class NoisyFlow {
     FlowResult run() {
         labels_ = mesh_.components;
         count_ = mesh_.component_count;
-        try {
+        return finished([&] {
             grow();
             if (!result_.partial) merge_on_moments();
             if (!result_.partial) judge_by_raw_mesh();
@@ -93,6 +93,31 @@ class NoisyFlow {
                 merge_completely();
                 relax();
             }
+        });
+    }
+
+    FlowResult refine(const Labels& labels) {
+        labels_ = labels;
+        count_ = 1 + static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end()));
+        return finished([&] {
+            weighed_.faces = mesh_.faces;
+            weighed_.neighbors = mesh_.neighbors;
+            weighed_.frame = mesh_.frame;
+            passage_.mesh = &weighed_;
+            judge_by_raw_mesh();
+            relax();
+            if (result_.partial) return;
+            merge_completely();
+            relax();
+        });
+    }
+
+  private:
+    /// What is there when `find_regions` is done or stopped.
+    template <class FindRegions>
+    FlowResult finished(const FindRegions& find_regions) {
+        try {
+            find_regions();
             if (!result_.partial) clean_up();
             if (!result_.partial) measure_noise();
         } catch (const runtime::Stopped&) {
@@ -104,7 +129,6 @@ class NoisyFlow {
         return std::move(result_);
     }
 
-  private:
     void grow() {
         const bool light = ratio_ < strong_from;
         const std::vector<Vec3> normals = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
@@ -270,6 +294,10 @@ class NoisyFlow {
 
 FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise) {
     return NoisyFlow(input, noise).run();
+}
+
+FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const Labels& labels) {
+    return NoisyFlow(input, noise).refine(labels);
 }
 
 }  // namespace quadseg::flow

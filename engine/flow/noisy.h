@@ -11,4 +11,8 @@ namespace quadseg::flow {
 /// number of regions itself (options.regions is not looked at).
 FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise);
 
+/// Its second half, on the raw mesh, from connected regions found elsewhere: labels 0 … n−1, all of
+/// them in use.
+FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const partition::Labels& labels);
+
 }  // namespace quadseg::flow

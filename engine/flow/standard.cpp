@@ -6,7 +6,7 @@
 #include "flow/fast.h"
 #include "flow/freeform.h"
 #include "flow/noise.h"
-#include "flow/noisy.h"
+#include "flow/noisy_coarse.h"
 #include "partition/leaves.h"
 
 #include <algorithm>
@@ -60,10 +60,10 @@ FlowResult run_standard(const FlowInput& input) {
     exact::ExactSurfaces exact;
     try {
         const NoiseEstimate noise = estimate_noise(input.mesh, input.control);
-        if (noise.noisy() && !noise.doubtful()) return run_noisy(input, noise);
+        if (noise.noisy() && !noise.doubtful()) return run_noisy_coarse(input, noise);
         exact = exact::find_exact_surfaces(input.mesh, input.control);
         const bool exact_after_all = !noise.noisy() || exact.partial || shows_exact_surfaces(input.mesh, exact);
-        if (!exact_after_all) return run_noisy(input, noise);
+        if (!exact_after_all) return run_noisy_coarse(input, noise);
     } catch (const runtime::Stopped&) {
         return run_fast(input, fast_options(input.options));
     }

@@ -39,6 +39,10 @@ FlowResult as_projected(const FlowInput&, const Labels& labels) {
     return result;
 }
 
+simplify::Decimated to_200_faces(const FlowInput& fine) {
+    return flow::simplified(fine, fine.mesh.positions, 200, 30);
+}
+
 TEST(Coarse, SidesOfABoxComeBackExactly) {
     const mesh::WorkMesh mesh = work_mesh(box(24));
     const Options options;
@@ -46,7 +50,7 @@ TEST(Coarse, SidesOfABoxComeBackExactly) {
     const FlowInput input{mesh, nullptr, options, control};
     std::size_t coarse_faces = 0;
     const FlowResult result = flow::run_coarse(
-        input, 200,
+        input, to_200_faces,
         [&](const FlowInput& coarse) {
             coarse_faces = coarse.mesh.face_count();
             EXPECT_NEAR(coarse.mesh.total_area, mesh.total_area, 1e-6);
@@ -68,7 +72,7 @@ TEST(Coarse, FeaturesComeAlongToTheSimplifiedMesh) {
     const mesh::FeatureEdges features = mesh::find_feature_edges(mesh, 30, control);
     std::size_t groups = 0;
     flow::run_coarse(
-        {mesh, &features, options, control}, 200,
+        {mesh, &features, options, control}, to_200_faces,
         [&](const FlowInput& coarse) {
             EXPECT_NE(coarse.features, nullptr);
             if (coarse.features != nullptr) mesh::feature_groups(coarse.mesh, *coarse.features, groups);
@@ -84,7 +88,8 @@ TEST(Coarse, MeshThatCannotBeSimplifiedIsSegmentedAsItIs) {
     const runtime::RunControl control(nullptr);
     bool refined = false;
     const FlowResult result = flow::run_coarse(
-        {mesh, nullptr, options, control}, 11,
+        {mesh, nullptr, options, control},
+        [](const FlowInput& fine) { return flow::simplified(fine, fine.mesh.positions, 11, 30); },
         [&](const FlowInput& given) {
             EXPECT_EQ(given.mesh.face_count(), mesh.face_count());
             return by_normal(given);
