@@ -19,7 +19,8 @@ struct Part {
     MergeRegion moments;
     quadric::RegionFit fit;
     std::vector<std::uint32_t> faces;
-    double length = 0;  ///< of its description
+    std::size_t fitted_faces = 0;  ///< of which `fit` was found
+    double length = 0;             ///< of its description
 };
 
 struct Pair {
@@ -47,6 +48,7 @@ class CompleteMerger {
             part.fit.total = part.fit.energy.hybrid(rules_.weight);  // relaxation may have weighed otherwise
             part.moments = moments[r];
             part.faces.assign(faces.face.begin() + faces.begin[r], faces.face.begin() + faces.begin[r + 1]);
+            part.fitted_faces = part.faces.size();
             score(part.moments);
             part.length = std::min(length_of(part.fit), part.moments.score.cost);
         });
@@ -231,9 +233,21 @@ class CompleteMerger {
         for (const std::uint32_t f : b.faces) labels_[f] = static_cast<std::int32_t>(p.a);
         const double expected = a.length + b.length + p.rise;
         a.moments = join(a.moments, b.moments);
+        const Part& large = a.faces.size() < b.faces.size() ? b : a;
+        const Part& small = &large == &a ? b : a;
+        quadric::RegionFit fit = large.fit;
+        std::size_t fitted = large.fitted_faces;
+        // A surface hardly changes with the small ones that join it one by one: it is found anew when they add up.
+        if (rules_.size_ratio * static_cast<double>(faces.size() - fitted) < static_cast<double>(fitted)) {
+            fit.total += energy_under(small, fit.proxy);
+        } else {
+            fit = fit_faces(faces);
+            fitted = faces.size();
+        }
+        a.fit = fit;
+        a.fitted_faces = fitted;
         a.faces = std::move(faces);
         b.faces = {};
-        a.fit = fit_faces(a.faces);
         a.length = std::min({expected, length_of(a.fit), a.moments.score.cost});
     }
 

@@ -10,8 +10,8 @@
 namespace quadseg::flow {
 
 struct NoisyCoarseSizes {
-    std::size_t pays_from = 300000;  ///< below it small surfaces get too few faces of a simplified mesh
-    std::size_t coarse_faces = 200000;
+    std::size_t pays_from = 250000;  ///< below it small surfaces get too few faces of a simplified mesh
+    std::size_t coarse_faces = 200000;  ///< but no more than half of the faces
 };
 
 /// The noisy flow (flow/noisy.h), on large meshes through a simplified one.
