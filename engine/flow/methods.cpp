@@ -216,6 +216,10 @@ MethodPolicy method_policy(const Options& options, std::function<void()> poll) {
     return policy;
 }
 
+/// A stop owes its result at once, and a surface for each of hundreds of thousands of regions takes its time: where
+/// merging has hardly begun, nothing but the components has been found.
+constexpr std::size_t most_regions_of_a_stop = 20000;
+
 FlowResult run_hierarchical(const FlowInput& input) {
     const mesh::WorkMesh& mesh = input.mesh;
     const std::size_t faces = mesh.face_count();
@@ -227,11 +231,15 @@ FlowResult run_hierarchical(const FlowInput& input) {
     const partition::Scorer scorer = [weight](const quadric::Moments& m) { return primitive_score(m, weight); };
     try {
         input.control.report(Phase::fine, 0.2, faces);
-        const auto fragments = partition::measure_regions(mesh, single, faces, scorer, input.control);
         const auto pairs = partition::region_pairs(passage, single, input.control);
+        // Faces are measured for each merging anew: a copy for the second would be half a kilobyte a face.
+        const auto merged = [&](const partition::MergeRules& rules) {
+            return partition::merge_pairs(partition::measure_regions(mesh, single, faces, scorer, input.control), pairs,
+                                          rules, scorer, input.control);
+        };
         partition::MergeRules rules;
         rules.target = std::max<std::size_t>(input.options.regions, 1);
-        partition::Merging merging = partition::merge_pairs(fragments, pairs, rules, scorer, input.control);
+        partition::Merging merging = merged(rules);
         if (input.options.regions == 0 && !merging.stopped) {
             // The first merge sequence tells how far the threshold reaches; the second stops there.
             rules.target = faces;
@@ -239,9 +247,9 @@ FlowResult run_hierarchical(const FlowInput& input) {
                 if (!(step.energy <= input.options.paper.energy_threshold)) break;
                 rules.target = step.regions;
             }
-            const std::vector<MergeStep> history = std::move(merging.history);
-            merging = partition::merge_pairs(fragments, pairs, rules, scorer, input.control);
-            merging.history = history;
+            std::vector<MergeStep> history = std::move(merging.history);
+            merging = merged(rules);
+            merging.history = std::move(history);
         }
         result.labels.resize(faces);
         for (std::size_t f = 0; f < faces; ++f) result.labels[f] = merging.region_of[f];
@@ -249,9 +257,11 @@ FlowResult run_hierarchical(const FlowInput& input) {
         result.history = std::move(merging.history);
         result.partial = merging.stopped;
     } catch (const runtime::Stopped&) {
-        result.labels = std::move(single);
-        result.regions = faces;
         result.partial = true;
+    }
+    if (result.partial && (result.labels.empty() || result.regions > most_regions_of_a_stop)) {
+        result.labels = mesh.components;
+        result.regions = mesh.component_count;
     }
     if (result.partial) {
         result.stop = input.control.cancelled() ? StopReason::cancelled : StopReason::deadline;

@@ -38,7 +38,7 @@ struct MethodPolicy {
 MethodPolicy method_policy(const Options& options, std::function<void()> poll = {});
 
 /// Method::hierarchical: merges down to Options::regions; 0: as far as the energy stays below
-/// PaperOptions::energy_threshold.
+/// PaperOptions::energy_threshold. Stopped while there are more than 20,000 regions: the components.
 FlowResult run_hierarchical(const FlowInput& input);
 
 }  // namespace quadseg::flow

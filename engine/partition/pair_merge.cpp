@@ -222,17 +222,19 @@ class Merger {
     }
 
     void collect(Merging& result) {
-        result.region_of.assign(parent_.size(), -1);
-        result.regions.reserve(alive_);
-        std::vector<std::int32_t> id(parent_.size(), -1);
+        result.region_of.resize(parent_.size());
+        std::uint32_t next = 0;
         for (std::uint32_t i = 0; i < parent_.size(); ++i) {
-            const std::uint32_t r = root(i);
-            if (id[r] < 0) {
-                id[r] = static_cast<std::int32_t>(result.regions.size());
-                result.regions.push_back(regions_[r]);
+            const std::uint32_t r = root(i);  // the first fragment of its region
+            if (r == i) {
+                if (next != i) regions_[next] = regions_[i];
+                result.region_of[i] = static_cast<std::int32_t>(next++);
+            } else {
+                result.region_of[i] = result.region_of[r];
             }
-            result.region_of[i] = id[r];
         }
+        regions_.resize(next);
+        result.regions = std::move(regions_);  // in its place: where little has merged, a copy takes long
     }
 
     std::vector<MergeRegion> regions_;
