@@ -11,6 +11,8 @@ namespace {
 constexpr std::size_t a_job = std::size_t{8} << 20;
 constexpr std::size_t a_vertex = 250;  ///< a soup has six times as many of them as a closed mesh
 constexpr std::size_t a_clean_face = 165, a_noisy_face = 430;
+/// And for each thread beyond two, as measured up to 16: what every thread has in hand at once.
+constexpr std::size_t a_clean_face_of_a_thread = 8, a_noisy_face_of_a_thread = 35;
 constexpr std::size_t a_paper_face = 230, a_hierarchical_face = 1950;
 /// Unions of two regions that are fitted at once, one a thread: each may be the whole mesh while there are few regions.
 constexpr std::size_t a_fitted_face = 300;
@@ -35,7 +37,10 @@ std::size_t estimated_bytes(const MeshView& mesh, const Options& options, int th
     const std::size_t faces = mesh.face_count(), coarse = coarse_face_count(options, faces);
     std::size_t bytes = a_job + mesh.vertex_count() * a_vertex + (coarse > 0 ? faces * a_simplified_face : 0);
     if (options.preset != Preset::paper) {
-        bytes += faces * (surfaces == Surfaces::noisy && noise_matters(options) ? a_noisy_face : a_clean_face);
+        const bool noisy = surfaces == Surfaces::noisy && noise_matters(options);
+        const auto more_threads = static_cast<std::size_t>(std::max(0, threads - 2));
+        bytes += faces * (noisy ? a_noisy_face + more_threads * a_noisy_face_of_a_thread
+                                : a_clean_face + more_threads * a_clean_face_of_a_thread);
     } else if (options.method == Method::hierarchical) {
         bytes += faces * a_hierarchical_face;
     } else {

@@ -67,7 +67,8 @@ FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, 
         return run_noisy(coarse, rest);
     };
     const auto simplify = [&](const FlowInput& fine) {
-        return simplified_scan(fine, noise.sigma / noise.edge, std::min(sizes.coarse_faces, fine.mesh.face_count() / 2));
+        return simplified_scan(fine, noise.sigma / noise.edge,
+                               std::min(sizes.coarse_faces, fine.mesh.face_count() / 2));
     };
     const auto refine = [&](const FlowInput& fine, const partition::Labels& labels) {
         return refine_noisy(fine, noise, labels);

@@ -10,7 +10,7 @@
 namespace quadseg::flow {
 
 struct NoisyCoarseSizes {
-    std::size_t pays_from = 250000;  ///< below it small surfaces get too few faces of a simplified mesh
+    std::size_t pays_from = 250000;     ///< below it small surfaces get too few faces of a simplified mesh
     std::size_t coarse_faces = 200000;  ///< but no more than half of the faces
 };
 
