@@ -56,7 +56,7 @@ template <class Coefficients>
                           8.0 * (f0 * m12 + f1 * m20 + f2 * m01) +
                           16.0 * (middles * middles + m01 * m01 + m12 * m12 + m20 * m20);
     const Part sx = g0.x + g1.x + g2.x, sy = g0.y + g1.y + g2.y, sz = g0.z + g1.z + g2.z;
-    Part length;
+    Part length{};
     square_root((sx * sx + sy * sy + sz * sz) * (1.0 / 9), length);
     maximum(length, gradient_floor, length);
     const Part r = 1.0 / length;

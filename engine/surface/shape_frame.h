@@ -52,7 +52,7 @@ struct ShapeDistance {
         } else {
             const Lanes y = c * un + s * ug, z = c * ug - s * un;  // along the radius through p and along the axis
             const Lanes a = k * (y * y + ub * ub) + (2 * c) * y, turn = k * y + c;
-            Lanes rho;  // k · distance from the axis
+            Lanes rho{};  // k · distance from the axis
             quadric::square_root(turn * turn + (k * k) * ub * ub, rho);
             const Lanes across = a / (rho + c);  // distance from the axis minus that of p
             const Lanes flat = c * across - s * z;
@@ -125,7 +125,7 @@ struct ShapeDistance {
   private:
     template <class Lanes>
     [[gnu::always_inline]] static Lanes root_of(const Lanes& value, double least) noexcept {
-        Lanes bounded, root;
+        Lanes bounded{}, root{};
         quadric::maximum(value, Lanes{} + least, bounded);
         quadric::square_root(bounded, root);
         return root;
