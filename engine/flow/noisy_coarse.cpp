@@ -59,7 +59,11 @@ simplify::Decimated simplified_scan(const FlowInput& input, double ratio, std::s
 }  // namespace
 
 FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, const NoisyCoarseSizes& sizes) {
-    if (input.mesh.face_count() < sizes.pays_from) return run_noisy(input, noise);
+    const std::size_t faces = input.mesh.face_count();
+    // Who asks for more detail gets the faces to show it on: at last all of them.
+    const double more = std::max(1.0, input.options.detail);
+    if (static_cast<double>(faces) < more * static_cast<double>(sizes.pays_from)) return run_noisy(input, noise);
+    const auto wanted = static_cast<std::size_t>(more * static_cast<double>(sizes.coarse_faces));
     const auto flow_on_coarse = [&](const FlowInput& coarse) {
         if (&coarse.mesh == &input.mesh) return run_noisy(input, noise);  // stopped, or not to be simplified
         NoiseEstimate rest = estimate_noise(coarse.mesh, coarse.control);
@@ -67,8 +71,7 @@ FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, 
         return run_noisy(coarse, rest);
     };
     const auto simplify = [&](const FlowInput& fine) {
-        return simplified_scan(fine, noise.sigma / noise.edge,
-                               std::min(sizes.coarse_faces, fine.mesh.face_count() / 2));
+        return simplified_scan(fine, noise.sigma / noise.edge, std::min(wanted, faces / 2));
     };
     const auto refine = [&](const FlowInput& fine, const partition::Labels& labels) {
         return refine_noisy(fine, noise, labels);

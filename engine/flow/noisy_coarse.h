@@ -14,7 +14,7 @@ struct NoisyCoarseSizes {
     std::size_t coarse_faces = 200000;  ///< but no more than half of the faces
 };
 
-/// The noisy flow (flow/noisy.h), on large meshes through a simplified one.
+/// The noisy flow (flow/noisy.h), on large meshes through a simplified one. Options::detail above 1 raises both sizes.
 FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, const NoisyCoarseSizes& sizes = {});
 
 }  // namespace quadseg::flow

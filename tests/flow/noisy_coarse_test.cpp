@@ -60,6 +60,16 @@ TEST(NoisyCoarse, SmallMeshesAreSegmentedDirectly) {
     EXPECT_EQ(scan.coarse().labels, scan.directly().labels);
 }
 
+TEST(NoisyCoarse, DetailRaisesTheSizes) {
+    const Scan scan("shaft", 40000, 0.001);
+    Options options;
+    options.detail = 2;
+    const runtime::RunControl control(nullptr);
+    const flow::FlowInput input{scan.mesh, nullptr, options, control};
+    const flow::NoiseEstimate noise = flow::estimate_noise(scan.mesh, control);
+    EXPECT_EQ(flow::run_noisy_coarse(input, noise, small).labels, flow::run_noisy(input, noise).labels);
+}
+
 TEST(NoisyCoarse, SameLabelsAtAnyThreadCount) {
     const Scan scan("shaft", 40000, 0.001);
     partition::Labels alone, together;
