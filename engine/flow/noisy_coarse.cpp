@@ -15,6 +15,9 @@ namespace {
 
 /// σ/h up to which filtered normals tell surfaces well enough to move vertices by.
 constexpr double light = 0.25;
+/// σ/h from which the faces of the fine mesh are folded, and moving borders by them ruins what the simplified mesh
+/// shows.
+constexpr double legible = 0.8;
 /// Smooth borders have no sharp edges under noise: nothing is kept in place.
 constexpr double no_crease = 180;
 
@@ -74,6 +77,13 @@ FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, 
         return simplified_scan(fine, noise.sigma / noise.edge, std::min(wanted, faces / 2));
     };
     const auto refine = [&](const FlowInput& fine, const partition::Labels& labels) {
+        if (noise.sigma > legible * noise.edge) {
+            FlowResult result;
+            result.labels = labels;
+            result.regions = partition::compact(result.labels);
+            result.noise = noise.sigma;
+            return result;
+        }
         return refine_noisy(fine, noise, labels);
     };
     return run_coarse(input, simplify, flow_on_coarse, refine);

@@ -55,6 +55,18 @@ TEST(NoisyCoarse, FindsAboutAsManyRegionsAsThereAreSurfaces) {
     }
 }
 
+/// Folded faces do not move the borders.
+TEST(NoisyCoarse, NoiseAsLargeAsEdgesLeavesTheSimplifiedMeshItsSay) {
+    const Scan scan("flange", 100000, 0.01);
+    const FlowResult result = scan.coarse();
+    EXPECT_FALSE(result.partial);
+    EXPECT_GE(result.regions, scan.surfaces() / 2);
+    EXPECT_LE(result.regions, scan.surfaces() * 14 / 10);
+    ASSERT_EQ(result.labels.size(), scan.mesh.face_count());
+    EXPECT_GE(*std::min_element(result.labels.begin(), result.labels.end()), 0);
+    EXPECT_GT(result.noise, 0);
+}
+
 TEST(NoisyCoarse, SmallMeshesAreSegmentedDirectly) {
     const Scan scan("shaft", 20000, 0.001);
     EXPECT_EQ(scan.coarse().labels, scan.directly().labels);
