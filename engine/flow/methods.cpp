@@ -232,7 +232,8 @@ FlowResult run_hierarchical(const FlowInput& input) {
     try {
         input.control.report(Phase::fine, 0.2, faces);
         const auto pairs = partition::region_pairs(passage, single, input.control);
-        // Faces are measured for each merging anew: a copy for the second would be half a kilobyte a face.
+        // Faces are measured for each merging anew: a copy kept for the second, half a kilobyte a face, takes a stop
+        // as long to give back as all that it may take.
         const auto merged = [&](const partition::MergeRules& rules) {
             return partition::merge_pairs(partition::measure_regions(mesh, single, faces, scorer, input.control), pairs,
                                           rules, scorer, input.control);

@@ -15,6 +15,9 @@ struct NoiseEstimate {
     /// Above this normals are of little use and every decision needs an honest price of chance.
     static constexpr double noisy_from = 0.02;  ///< σ/h
     bool noisy() const noexcept { return sigma > noisy_from * edge; }
+    /// From here on (σ/h) even filtered normals say little.
+    static constexpr double strong_from = 0.25;
+    bool strong() const noexcept { return sigma >= strong_from * edge; }
     /// The roughness may be that of a coarse tessellation: some edges show no noise at all.
     bool doubtful() const noexcept { return flat > 0.02; }
 };

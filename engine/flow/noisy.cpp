@@ -36,7 +36,8 @@ struct Prices {
 };
 /// Noise as large as edges is estimated too small (flow/noise.h), and most of E_n is it: both ω and prices rise.
 constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.33}, utmost_prices{12, 4, 0.3, 0.2, 0.33, 3, 1.5};
-constexpr double strong_from = 0.25, all_strong = 0.35, utmost_from = 0.52, all_utmost = 0.65;  ///< σ/h
+constexpr double strong_from = NoiseEstimate::strong_from, all_strong = 0.35, utmost_from = 0.52,
+                 all_utmost = 0.65;  ///< σ/h
 
 Prices prices_at(double ratio) {
     const bool beyond = ratio > all_strong;

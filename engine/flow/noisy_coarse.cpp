@@ -13,8 +13,6 @@
 namespace quadseg::flow {
 namespace {
 
-/// σ/h up to which filtered normals tell surfaces well enough to move vertices by.
-constexpr double light = 0.25;
 /// σ/h from which the faces of the fine mesh are folded, and moving borders by them ruins what the simplified mesh
 /// shows.
 constexpr double legible = 0.8;
@@ -48,8 +46,8 @@ void average(const mesh::WorkMesh& fine, simplify::Decimated& coarse, const runt
     }
 }
 
-simplify::Decimated simplified_scan(const FlowInput& input, double ratio, std::size_t faces) {
-    if (ratio < light) {
+simplify::Decimated simplified_scan(const FlowInput& input, bool strong, std::size_t faces) {
+    if (!strong) {
         const std::vector<Vec3> normals = filtered_normals(input.mesh, 1, 3, input.control);
         const std::vector<Vec3> positions = denoised_mesh(input.mesh, normals, input.control).positions;
         return simplified(input, positions, faces, no_crease);
@@ -74,7 +72,7 @@ FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, 
         return run_noisy(coarse, rest);
     };
     const auto simplify = [&](const FlowInput& fine) {
-        return simplified_scan(fine, noise.sigma / noise.edge, std::min(wanted, faces / 2));
+        return simplified_scan(fine, noise.strong(), std::min(wanted, faces / 2));
     };
     const auto refine = [&](const FlowInput& fine, const partition::Labels& labels) {
         if (noise.sigma > legible * noise.edge) {
