@@ -232,8 +232,8 @@ FlowResult run_hierarchical(const FlowInput& input) {
     try {
         input.control.report(Phase::fine, 0.2, faces);
         const auto pairs = partition::region_pairs(passage, single, input.control);
-        // Faces are measured for each merging anew: a copy kept for the second, half a kilobyte a face, takes a stop
-        // as long to give back as all that it may take.
+        // Faces are measured for each merging anew: a stop would wait while a copy kept for the second, half a kilobyte
+        // a face, is given back to the system.
         const auto merged = [&](const partition::MergeRules& rules) {
             return partition::merge_pairs(partition::measure_regions(mesh, single, faces, scorer, input.control), pairs,
                                           rules, scorer, input.control);
