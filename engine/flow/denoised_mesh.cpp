@@ -1,5 +1,6 @@
 #include "flow/denoised_mesh.h"
 
+#include "flow/vertex_moves.h"
 #include "mesh/vertex_faces.h"
 #include "runtime/parallel.h"
 
@@ -7,29 +8,7 @@ namespace quadseg::flow {
 namespace {
 
 constexpr int steps = 10;
-constexpr std::size_t vertex_grain = 4096;
 constexpr std::size_t face_grain = 8192;
-
-/// Every vertex by the mean of what brings it onto the planes of its faces (through their centroids).
-void move_vertices(mesh::WorkMesh& moved, const mesh::VertexFaces& incident, const runtime::RunControl& control) {
-    std::vector<Vec3> next(moved.vertex_count());
-    for (int step = 0; step < steps; ++step) {
-        runtime::parallel_blocks(next.size(), vertex_grain, [&](std::size_t begin, std::size_t end) {
-            control.check();
-            for (std::size_t v = begin; v < end; ++v) {
-                Vec3 sum;
-                for (std::size_t i = incident.begin[v]; i < incident.begin[v + 1]; ++i) {
-                    const std::size_t f = incident.face[i];
-                    const Vec3& n = moved.normals[f];
-                    sum += n * dot(n, moved.centroid(f) - moved.positions[v]);
-                }
-                const std::uint32_t count = incident.begin[v + 1] - incident.begin[v];
-                next[v] = count > 0 ? moved.positions[v] + sum / static_cast<double>(count) : moved.positions[v];
-            }
-        });
-        moved.positions.swap(next);
-    }
-}
 
 }  // namespace
 
@@ -42,7 +21,8 @@ mesh::WorkMesh denoised_mesh(const mesh::WorkMesh& mesh, const std::vector<Vec3>
     moved.normals = normals;
     moved.areas = mesh.areas;
     moved.frame = mesh.frame;
-    move_vertices(moved, mesh::vertex_faces(mesh, control), control);
+    const mesh::VertexFaces incident = mesh::vertex_faces(mesh, control);
+    for (int step = 0; step < steps; ++step) move_to_planes(moved, incident, 1, control);
     runtime::parallel_blocks(moved.face_count(), face_grain, [&](std::size_t begin, std::size_t end) {
         control.check();
         for (std::size_t f = begin; f < end; ++f) {

@@ -5,6 +5,7 @@
 #include "flow/description_length.h"
 #include "flow/evidence_areas.h"
 #include "flow/filtered_normals.h"
+#include "flow/softened_mesh.h"
 #include "partition/absorb.h"
 #include "partition/leaves.h"
 #include "partition/pair_merge.h"
@@ -30,12 +31,12 @@ struct Prices {
     double region = 1.5;        ///< of a region as such, times ln(faces)
     double border_share = 0.3;  ///< what removed border is worth in a merge, of its price in relaxation: all of it
                                 ///< would swallow small surfaces
-    double relax_weight = 0.2;  ///< ω when faces move, of the ω of merging
+    double relax_weight = 0.15; ///< ω when faces move, of the ω of merging
     double weight = 0.75;       ///< ω of merging, in squared edges: less over-merges, more fragments
     double border = 2;          ///< χ² that an edge of mean length is worth
 };
 /// Noise as large as edges is estimated too small (flow/noise.h), and most of E_n is it: both ω and prices rise.
-constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.33}, utmost_prices{12, 4, 0.3, 0.2, 0.33, 3, 1.5};
+constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.25}, utmost_prices{12, 4, 0.3, 0.2, 0.2, 3, 1.5};
 constexpr double strong_from = NoiseEstimate::strong_from, all_strong = 0.35, utmost_from = 0.52,
                  all_utmost = 0.65;  ///< σ/h
 
@@ -88,7 +89,7 @@ class NoisyFlow {
         return finished([&] {
             grow();
             if (!result_.partial) merge_on_moments();
-            if (!result_.partial) judge_by_raw_mesh();
+            if (!result_.partial) judge_by_softened_mesh();
             if (!result_.partial) relax();
             for (int round = 0; round < 2 && !result_.partial; ++round) {
                 merge_completely();
@@ -101,11 +102,8 @@ class NoisyFlow {
         labels_ = labels;
         count_ = 1 + static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end()));
         return finished([&] {
-            weighed_.faces = mesh_.faces;
-            weighed_.neighbors = mesh_.neighbors;
-            weighed_.frame = mesh_.frame;
-            passage_.mesh = &weighed_;
-            judge_by_raw_mesh();
+            filter_normals();
+            judge_by_softened_mesh();
             relax();
             if (result_.partial) return;
             merge_completely();
@@ -130,17 +128,21 @@ class NoisyFlow {
         return std::move(result_);
     }
 
-    void grow() {
+    void filter_normals() {
         const bool light = ratio_ < strong_from;
-        const std::vector<Vec3> normals = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
-        weighed_ = denoised_mesh(mesh_, normals, control_);
+        normals_ = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
+    }
+
+    void grow() {
+        filter_normals();
+        weighed_ = denoised_mesh(mesh_, normals_, control_);
         weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
         passage_.mesh = &weighed_;
         partition::LeafOptions options;
-        options.largest = light ? 24 : 48;
+        options.largest = ratio_ < strong_from ? 24 : 48;
         options.smallest_coplanar = 0;
         options.by_number = true;
-        options.normals = normals;
+        options.normals = normals_;
         partition::Leaves leaves = partition::grow_leaves(passage_, options, control_);
         labels_ = std::move(leaves.labels);
         count_ = leaves.count;
@@ -158,11 +160,11 @@ class NoisyFlow {
         control_.report(Phase::fine, 0.3, count_);
     }
 
-    /// Regions have been found on the denoised mesh; whether they are right, and where they end, the raw one says.
-    void judge_by_raw_mesh() {
-        weighed_.positions = mesh_.positions;
-        weighed_.normals = mesh_.normals;
-        weighed_.areas = evidence_areas(mesh_, mesh_.total_area, control_);
+    /// Regions have been found on the denoised mesh; whether they are right, and where they end, another one says.
+    void judge_by_softened_mesh() {
+        weighed_ = softened_mesh(mesh_, normals_, ratio_, control_);
+        weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
+        passage_.mesh = &weighed_;
         measure();
     }
 
@@ -224,13 +226,26 @@ class NoisyFlow {
     /// The distances that large regions leave tell the noise more truly than the raw mesh did: they do not saturate.
     /// (The prices stay with the first estimate: raised by this one they cost small regions and win nothing.)
     void measure_noise() {
-        const double large = 128 * mesh_.total_area / static_cast<double>(mesh_.face_count());
-        std::vector<double> mean_squares;
-        for (std::size_t r = 0; r < count_; ++r) {
-            const double area = regions_[r].moments.total_area;
-            if (area >= large) mean_squares.push_back(fits_[r].energy.distance / area);
+        const double large_area = 128 * mesh_.total_area / static_cast<double>(mesh_.face_count());
+        std::vector<std::uint32_t> large;
+        for (std::uint32_t r = 0; r < count_; ++r) {
+            if (regions_[r].moments.total_area >= large_area) large.push_back(r);
         }
-        if (mean_squares.empty()) return;
+        if (large.empty()) return;
+        const partition::RegionFaces faces = partition::region_faces(labels_, count_);
+        std::vector<double> mean_squares(large.size());
+        runtime::parallel_for(large.size(), 1, [&](std::size_t i) {
+            control_.check();
+            const std::uint32_t r = large[i];
+            double distance = 0;
+            for (std::uint32_t k = faces.begin[r]; k < faces.begin[r + 1]; ++k) {
+                const std::uint32_t f = faces.face[k];
+                distance += quadric::triangle_energy(fits_[r].proxy, mesh_.corner(f, 0), mesh_.corner(f, 1),
+                                                     mesh_.corner(f, 2), mesh_.normals[f], weighed_.areas[f])
+                                .distance;
+            }
+            mean_squares[i] = distance / regions_[r].moments.total_area;
+        });
         const auto middle = mean_squares.begin() + static_cast<std::ptrdiff_t>(mean_squares.size() / 2);
         std::nth_element(mean_squares.begin(), middle, mean_squares.end());
         // ∫d² over triangles of independent vertices is half of what the vertices have.
@@ -277,7 +292,8 @@ class NoisyFlow {
     }
 
     const mesh::WorkMesh& mesh_;
-    mesh::WorkMesh weighed_;  ///< first denoised, then raw; its areas are evidence (flow/evidence_areas.h)
+    mesh::WorkMesh weighed_;     ///< first denoised, then softened; its areas are evidence (flow/evidence_areas.h)
+    std::vector<Vec3> normals_;  ///< filtered
     const runtime::RunControl& control_;
     Passage passage_;
     double ratio_ = 0;
