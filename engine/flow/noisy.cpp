@@ -55,6 +55,13 @@ Prices prices_at(double ratio) {
             between(a.border, b.border)};
 }
 
+/// Borders are drawn after the noise. What that gains grows with their length in edges: on finer meshes of the same
+/// shape pieces of a surface look more worth keeping, and the prices of merging have to follow.
+double merging_factor(std::size_t faces) {
+    constexpr double usual_faces = 50000, largest = 2;
+    return std::clamp(std::sqrt(static_cast<double>(faces) / usual_faces), 1.0, largest);
+}
+
 /// Least squares miss the best surface by a share of the energy, which on a large one is more than any price: two
 /// surfaces that are √.1 σ apart (RMS) are one, where they have many more than so many vertices.
 constexpr double blur = 0.1, blur_vertices = 500;
@@ -65,12 +72,15 @@ constexpr std::size_t smallest_region = 8;
 
 class NoisyFlow {
   public:
-    NoisyFlow(const FlowInput& input, const NoiseEstimate& noise)
+    NoisyFlow(const FlowInput& input, const NoiseEstimate& noise, double merging_factor)
         : mesh_(input.mesh), control_(input.control), passage_{&input.mesh, input.features, {}} {
         const double h = noise.edge;
         const double mean_area = mesh_.total_area / static_cast<double>(std::max<std::size_t>(1, mesh_.face_count()));
         ratio_ = noise.sigma / h;
         prices_ = prices_at(ratio_);
+        for (double* price : {&prices_.moment, &prices_.complete, &prices_.region, &prices_.border_share}) {
+            *price *= merging_factor;
+        }
         evidence_ = noise.sigma * noise.sigma * 2 * mean_area / input.options.detail;
         // Where faces move it is the likelihood of independent vertices that counts: h²/8, with which E_d + ω E_n of a
         // triangle is ∝ Σ d² over its vertices.
@@ -162,7 +172,9 @@ class NoisyFlow {
 
     /// Regions have been found on the denoised mesh; whether they are right, and where they end, another one says.
     void judge_by_softened_mesh() {
+        weighed_ = {};  // two at once would be the job's peak of memory
         weighed_ = softened_mesh(mesh_, normals_, ratio_, control_);
+        normals_ = {};
         weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
         passage_.mesh = &weighed_;
         measure();
@@ -309,12 +321,12 @@ class NoisyFlow {
 
 }  // namespace
 
-FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise) {
-    return NoisyFlow(input, noise).run();
+FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise, Scan scan) {
+    return NoisyFlow(input, noise, scan == Scan::raw ? merging_factor(input.mesh.face_count()) : 1).run();
 }
 
 FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const Labels& labels) {
-    return NoisyFlow(input, noise).refine(labels);
+    return NoisyFlow(input, noise, 1).refine(labels);
 }
 
 }  // namespace quadseg::flow

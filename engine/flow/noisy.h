@@ -6,12 +6,15 @@
 
 namespace quadseg::flow {
 
-/// On the denoised mesh: leaves → merging by description length; on the raw one: relaxation with a price on border
+/// What a simplified scan shows has been averaged: its many faces ask for no higher prices.
+enum class Scan { raw, simplified };
+
+/// On the denoised mesh: leaves → merging by description length; on the softened one: relaxation with a price on border
 /// length → merging by complete fits → clean-up. Faces count by their evidence (flow/evidence_areas.h). Finds the
 /// number of regions itself (options.regions is not looked at).
-FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise);
+FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise, Scan scan = Scan::raw);
 
-/// Its second half, on the raw mesh, from connected regions found elsewhere: labels 0 … n−1, all of
+/// Its second half, on the softened mesh, from connected regions found elsewhere: labels 0 … n−1, all of
 /// them in use.
 FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const partition::Labels& labels);
 

@@ -13,9 +13,6 @@
 namespace quadseg::flow {
 namespace {
 
-/// σ/h from which the faces of the fine mesh are folded, and moving borders by them ruins what the simplified mesh
-/// shows.
-constexpr double legible = 0.8;
 /// Smooth borders have no sharp edges under noise: nothing is kept in place.
 constexpr double no_crease = 180;
 
@@ -69,19 +66,12 @@ FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, 
         if (&coarse.mesh == &input.mesh) return run_noisy(input, noise);  // stopped, or not to be simplified
         NoiseEstimate rest = estimate_noise(coarse.mesh, coarse.control);
         rest.sigma = std::max(rest.sigma, NoiseEstimate::noisy_from * rest.edge);
-        return run_noisy(coarse, rest);
+        return run_noisy(coarse, rest, Scan::simplified);
     };
     const auto simplify = [&](const FlowInput& fine) {
         return simplified_scan(fine, noise.strong(), std::min(wanted, faces / 2));
     };
     const auto refine = [&](const FlowInput& fine, const partition::Labels& labels) {
-        if (noise.sigma > legible * noise.edge) {
-            FlowResult result;
-            result.labels = labels;
-            result.regions = partition::compact(result.labels);
-            result.noise = noise.sigma;
-            return result;
-        }
         return refine_noisy(fine, noise, labels);
     };
     return run_coarse(input, simplify, flow_on_coarse, refine);

@@ -55,8 +55,8 @@ TEST(NoisyCoarse, FindsAboutAsManyRegionsAsThereAreSurfaces) {
     }
 }
 
-/// Folded faces do not move the borders.
-TEST(NoisyCoarse, NoiseAsLargeAsEdgesLeavesTheSimplifiedMeshItsSay) {
+/// Folded faces would ruin the borders (flow/softened_mesh.h).
+TEST(NoisyCoarse, NoiseAsLargeAsEdgesIsBorne) {
     const Scan scan("flange", 100000, 0.01);
     const FlowResult result = scan.coarse();
     EXPECT_FALSE(result.partial);
