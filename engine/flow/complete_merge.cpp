@@ -58,7 +58,7 @@ class CompleteMerger {
         find_pairs();
         while (merge_round()) {
         }
-        return partition::compact(labels_);
+        return partition::close_gaps(labels_);
     }
 
   private:

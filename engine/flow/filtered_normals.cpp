@@ -15,19 +15,23 @@ constexpr std::size_t face_grain = 4096;
 // Narrower widths make staircases of smooth surfaces.
 constexpr double narrowest = 8 * std::numbers::pi / 180, widest = 25 * std::numbers::pi / 180;
 
-/// Width of the bilateral weight: three times the median difference between neighbours.
+/// Width of the bilateral weight: three times the median difference between neighbours. (A sample of the faces depends
+/// on how the mesh lies in its axes.)
 double range_width(const mesh::WorkMesh& mesh, const std::vector<Vec3>& normals) {
-    const std::size_t stride = 1 + mesh.face_count() / 16384;
-    std::vector<double> differences;
+    constexpr std::size_t most_samples = 65536;
+    const std::size_t stride = 1 + (mesh.face_count() - 1) / most_samples;
+    std::vector<double> squared_differences;
     for (std::size_t f = 0; f < mesh.face_count(); f += stride) {
         for (const std::int32_t g : mesh.neighbors[f]) {
-            if (g >= 0) differences.push_back(norm(normals[f] - normals[static_cast<std::size_t>(g)]));
+            if (g < 0) continue;
+            const auto u = static_cast<std::size_t>(g);
+            if (stride > 1 || u > f) squared_differences.push_back(squared_norm(normals[f] - normals[u]));
         }
     }
-    if (differences.empty()) return widest;
-    const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-    std::nth_element(differences.begin(), middle, differences.end());
-    return std::clamp(3 * *middle, narrowest, widest);
+    if (squared_differences.empty()) return widest;
+    const auto middle = squared_differences.begin() + static_cast<std::ptrdiff_t>(squared_differences.size() / 2);
+    std::nth_element(squared_differences.begin(), middle, squared_differences.end());
+    return std::clamp(3 * std::sqrt(*middle), narrowest, widest);
 }
 
 }  // namespace

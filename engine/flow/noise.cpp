@@ -11,7 +11,9 @@
 namespace quadseg::flow {
 namespace {
 
-constexpr std::size_t most_samples = 16384;
+/// Which faces a sample holds depends on how the mesh lies in its axes. What scans are judged by should not, up to
+/// this size; that there is noise at all shows in a smaller one.
+constexpr std::size_t first_samples = 16384, most_samples = 65536;
 constexpr std::size_t vertex_grain = 8192;
 
 double quantile(std::vector<double>& values, double q) {
@@ -27,8 +29,8 @@ struct EdgeStatistics {
     double flat = 0;       ///< share of angles below a hundredth of that: of white noise .002
 };
 
-EdgeStatistics sample_edges(const mesh::WorkMesh& mesh) {
-    const std::size_t stride = 1 + mesh.face_count() / most_samples;
+EdgeStatistics sample_edges(const mesh::WorkMesh& mesh, std::size_t samples) {
+    const std::size_t stride = 1 + (mesh.face_count() - 1) / samples;
     double sum = 0;
     std::size_t count = 0;
     std::vector<double> angles;
@@ -48,6 +50,16 @@ EdgeStatistics sample_edges(const mesh::WorkMesh& mesh) {
     const auto flat = std::count_if(angles.begin(), angles.end(), [&](double a) { return a < 0.01 * edges.low_angle; });
     if (!angles.empty()) edges.flat = static_cast<double>(flat) / static_cast<double>(angles.size());
     return edges;
+}
+
+NoiseEstimate from_edges(const EdgeStatistics& edges) {
+    NoiseEstimate estimate;
+    estimate.edge = edges.mean_length;
+    estimate.flat = edges.flat;
+    // Of white noise of standard deviation 1 edge the dihedral angles have 2.31; .2533 is the 20 % quantile of
+    // |N(0,1)|.
+    estimate.sigma = edges.low_angle / 0.2533 * edges.mean_length / 2.31;
+    return estimate;
 }
 
 /// Averages over the ring that bring normals back even where noise is as large as the edges.
@@ -95,7 +107,7 @@ double bilaplacian_deviation(const mesh::WorkMesh& mesh, const std::vector<Vec3>
 
 /// Mean length of the edges as they were without noise: their projections onto the smoothed faces.
 double projected_edge(const mesh::WorkMesh& mesh, const std::vector<Vec3>& smoothed) {
-    const std::size_t stride = 1 + mesh.face_count() / most_samples;
+    const std::size_t stride = 1 + (mesh.face_count() - 1) / most_samples;
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t f = 0; f < mesh.face_count(); f += stride) {
@@ -120,14 +132,13 @@ double misfit_angle(const NoiseEstimate& noise) noexcept {
 
 NoiseEstimate estimate_noise(const mesh::WorkMesh& mesh, const runtime::RunControl& control) {
     control.check();
-    NoiseEstimate estimate;
-    const EdgeStatistics edges = sample_edges(mesh);
-    estimate.edge = edges.mean_length;
-    estimate.flat = edges.flat;
-    // Of white noise of standard deviation 1 edge the dihedral angles have 2.31; .2533 is the 20 % quantile of
-    // |N(0,1)|.
-    estimate.sigma = edges.low_angle / 0.2533 * edges.mean_length / 2.31;
+    if (mesh.face_count() == 0) return {};
+    NoiseEstimate estimate = from_edges(sample_edges(mesh, first_samples));
     if (!estimate.noisy()) return estimate;
+    if (mesh.face_count() > first_samples) {
+        estimate = from_edges(sample_edges(mesh, most_samples));
+        if (!estimate.noisy()) return estimate;
+    }
     const std::vector<Vec3> smoothed = filtered_normals(mesh, normal_averages, 0, control);
     estimate.sigma = std::min(estimate.sigma, bilaplacian_deviation(mesh, smoothed, control));
     estimate.edge = projected_edge(mesh, smoothed);

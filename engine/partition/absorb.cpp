@@ -80,7 +80,7 @@ std::size_t absorb_small(const Passage& passage, Labels& labels, std::size_t cou
         if (!members[t].empty()) members[t].insert(members[t].end(), members[r].begin(), members[r].end());
         members[r].clear();
     }
-    return compact(labels);
+    return close_gaps(labels);
 }
 
 }  // namespace quadseg::partition

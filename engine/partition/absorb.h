@@ -18,7 +18,7 @@ struct AbsorbOptions {
     double weight = 0.5;              ///< ω of the energy
 };
 
-/// Labels 0 … count−1 with one fit each; returns the number of regions, renumbered by first face. Regions without a
+/// Labels 0 … count−1 with one fit each; returns the number of regions, renumbered without gaps. Regions without a
 /// neighbour across the passage stay.
 std::size_t absorb_small(const Passage& passage, Labels& labels, std::size_t count,
                          std::span<const quadric::RegionFit> fits, const AbsorbOptions& options,

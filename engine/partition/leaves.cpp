@@ -7,12 +7,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace quadseg::partition {
 namespace {
 
-// A leaf never crosses a block; 16K faces keep the cut borders below 1 % of the leaves.
-constexpr std::size_t block_faces = 16384;
+// A leaf never crosses a block; 16K faces keep the cut borders below 1 % of the leaves. Where there is an order, for the
+// sake of a result that does not depend on the mesh's place, blocks are as large as tasks may be.
+constexpr std::size_t block_faces = 16384, ordered_block_faces = 65536;
 constexpr double coplanar_normal = 1e-6;
 constexpr double coplanar_offset = 2e-6;
 constexpr std::int32_t unlabelled = -1;
@@ -45,8 +47,25 @@ class BlockGrower {
 
     std::array<std::int32_t, 3> neighbors(std::size_t f) const noexcept {
         std::array<std::int32_t, 3> g = {passage_.across(f, 0), passage_.across(f, 1), passage_.across(f, 2)};
-        if (options_.by_number) std::sort(g.begin(), g.end());
+        if (!options_.order.empty()) {
+            std::sort(g.begin(), g.end(), [&](std::int32_t a, std::int32_t b) {
+                if (a < 0 || b < 0) return a < b;
+                return comes_before(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+            });
+        }
         return g;
+    }
+    bool comes_before(std::size_t a, std::size_t b) const noexcept {
+        const double x = options_.order[a], y = options_.order[b];
+        return x != y ? x < y : a < b;
+    }
+    std::vector<std::uint32_t> seeds() const {
+        std::vector<std::uint32_t> faces(end_ - begin_);
+        std::iota(faces.begin(), faces.end(), static_cast<std::uint32_t>(begin_));
+        if (!options_.order.empty()) {
+            std::sort(faces.begin(), faces.end(), [&](std::size_t a, std::size_t b) { return comes_before(a, b); });
+        }
+        return faces;
     }
 
     void grow_coplanar() {
@@ -83,11 +102,11 @@ class BlockGrower {
 
     void grow_by_normal() {
         const double cosine = std::cos(options_.angle * std::numbers::pi / 180);
-        for (std::size_t seed = begin_; seed < end_; ++seed) {
+        for (const std::uint32_t seed : seeds()) {
             if (labels_[seed] != unlabelled || !passage_.is_active(seed) || !has_normal(seed)) continue;
             // The running mean is weighted by area, so that slivers with doubtful normals do not steer the leaf.
             Vec3 mean = normals_[seed] * mesh_.areas[seed];
-            queue_.assign(1, static_cast<std::uint32_t>(seed));
+            queue_.assign(1, seed);
             labels_[seed] = count_;
             for (std::size_t head = 0; head < queue_.size() && queue_.size() < options_.largest; ++head) {
                 for (const std::int32_t g : neighbors(queue_[head])) {
@@ -146,17 +165,18 @@ class BlockGrower {
 
 Leaves grow_leaves(const Passage& passage, const LeafOptions& options, const runtime::RunControl& control) {
     const std::size_t faces = passage.mesh->face_count();
+    const std::size_t block = options.order.empty() ? block_faces : ordered_block_faces;
     Leaves leaves;
     leaves.labels.assign(faces, unlabelled);
-    std::vector<std::size_t> offset((faces + block_faces - 1) / block_faces);
-    runtime::parallel_blocks(faces, block_faces, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::size_t> offset((faces + block - 1) / block);
+    runtime::parallel_blocks(faces, block, [&](std::size_t begin, std::size_t end) {
         control.check();
-        offset[begin / block_faces] = BlockGrower(passage, options, leaves.labels, begin, end).grow();
+        offset[begin / block] = BlockGrower(passage, options, leaves.labels, begin, end).grow();
     });
     leaves.count = runtime::exclusive_scan(offset);
     control.check();
-    runtime::parallel_blocks(faces, block_faces, [&](std::size_t begin, std::size_t end) {
-        const auto first = static_cast<std::int32_t>(offset[begin / block_faces]);
+    runtime::parallel_blocks(faces, block, [&](std::size_t begin, std::size_t end) {
+        const auto first = static_cast<std::int32_t>(offset[begin / block]);
         for (std::size_t f = begin; f < end; ++f) {
             if (leaves.labels[f] >= 0) leaves.labels[f] += first;
         }

@@ -31,14 +31,15 @@ struct LeafOptions {
     double angle = 8;                   ///< degrees between a face and the running mean normal of its leaf
     std::size_t largest = 128;          ///< faces of a leaf that is not exactly plane
     std::size_t smallest_coplanar = 9;  ///< exactly coplanar groups of at least so many faces are one leaf; 0: none
-    /// Neighbours join in the order of their numbers instead of a face's edges: the same leaves whichever corner of a
-    /// face the file names first.
-    bool by_number = false;
+    /// F' numbers: faces grow leaves, and join them, in ascending order of these, and leaves are numbered in the order in
+    /// which they grow. The same leaves however the mesh lies and is numbered, as long as it is one block.
+    /// Empty: in the order of the faces and of their edges.
+    std::span<const double> order = {};
     std::span<const Vec3> normals = {};  ///< to grow by instead of the mesh's (filtered ones on scans); empty: those
 };
 
 /// Every active face in an edge-connected leaf 0 … count−1 (numbered along the faces); inactive faces −1. Grown in
-/// blocks of consecutive (Morton-ordered) faces, so that blocks are independent tasks.
+/// blocks of 16384, with an order of 65536 consecutive (Morton-ordered) faces, so that blocks are independent tasks.
 struct Leaves {
     Labels labels;
     std::size_t count = 0;

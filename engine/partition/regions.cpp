@@ -42,6 +42,28 @@ std::size_t compact(Labels& labels, std::vector<std::int32_t>& renumbered) {
     return static_cast<std::size_t>(count);
 }
 
+std::size_t close_gaps(Labels& labels) {
+    std::vector<std::int32_t> renumbered;
+    return close_gaps(labels, renumbered);
+}
+
+std::size_t close_gaps(Labels& labels, std::vector<std::int32_t>& renumbered) {
+    std::int32_t largest = -1;
+    for (const std::int32_t label : labels) largest = std::max(largest, label);
+    renumbered.assign(static_cast<std::size_t>(largest + 1), -1);
+    for (const std::int32_t label : labels) {
+        if (label >= 0) renumbered[static_cast<std::size_t>(label)] = 0;
+    }
+    std::int32_t count = 0;
+    for (std::int32_t& r : renumbered) {
+        if (r == 0) r = count++;
+    }
+    for (std::int32_t& label : labels) {
+        if (label >= 0) label = renumbered[static_cast<std::size_t>(label)];
+    }
+    return static_cast<std::size_t>(count);
+}
+
 std::size_t split_disconnected(const mesh::WorkMesh& mesh, Labels& labels) {
     return mesh::connected_faces(
         mesh, [&](std::size_t f) { return labels[f] >= 0; },

@@ -25,6 +25,10 @@ RegionFaces region_faces(const Labels& labels, std::size_t count);
 std::size_t compact(Labels& labels);
 /// And says by what number each former label was replaced; −1: by none, no face had it.
 std::size_t compact(Labels& labels, std::vector<std::int32_t>& renumbered);
+/// Renumbers to 0 … n−1, labels keep their order; the same return value and replacements. (An order by first face
+/// depends on how the mesh lies in its axes; where labels were numbered by what faces look like, this one does not.)
+std::size_t close_gaps(Labels& labels);
+std::size_t close_gaps(Labels& labels, std::vector<std::int32_t>& renumbered);
 /// Splits regions that are not edge-connected (each part becomes a region, the part with the first face keeps the
 /// label, then compact()). Returns the number of regions.
 std::size_t split_disconnected(const mesh::WorkMesh& mesh, Labels& labels);
