@@ -24,7 +24,7 @@ struct CompleteMergeRules {
 };
 
 /// Labels 0 … count−1 without gaps, with a complete fit (to whatever weight) and moments each. Returns the number of
-/// regions left; labels keep the lower number of a merged pair and are then compacted. Throws Stopped.
+/// regions left; labels keep the lower number of a merged pair and their order (partition::close_gaps). Throws Stopped.
 std::size_t merge_by_complete_fits(const partition::Passage& passage, partition::Labels& labels,
                                    std::vector<quadric::RegionFit> fits, std::vector<partition::MergeRegion> moments,
                                    const CompleteMergeRules& rules, const runtime::RunControl& control);

@@ -103,6 +103,35 @@ TEST(Leaves, TheSameAtAnyThreadCount) {
     EXPECT_LT(impure, 0.04 * mesh.total_area);
 }
 
+/// Turned by a quarter, the mesh has other numbers and the same leaves.
+TEST(Leaves, WithAnOrderTheyDoNotDependOnNumbers) {
+    const datasets::Generated flange = datasets::generate("flange", 20000, 0.001);
+    Mesh turned = flange.mesh;
+    for (std::size_t i = 0; i < turned.positions.size(); i += 3) {
+        const double x = turned.positions[i];
+        turned.positions[i] = -turned.positions[i + 1];
+        turned.positions[i + 1] = x;
+    }
+    const auto leaves_of = [](const Mesh& mesh) {
+        const mesh::WorkMesh work = mesh::build_work_mesh(mesh.view(), free_run);
+        std::vector<double> order(work.face_count());
+        for (std::size_t f = 0; f < order.size(); ++f) order[f] = work.input_face[f] * 7919U % 1000003U;
+        LeafOptions options;
+        options.smallest_coplanar = 0;
+        options.order = order;
+        const Passage passage{&work};
+        const Leaves leaves = grow_leaves(passage, options, free_run);
+        test::expect_partition(passage, leaves.labels, leaves.count);
+        std::vector<std::int32_t> labels(work.face_count());
+        for (std::size_t f = 0; f < labels.size(); ++f) labels[work.input_face[f]] = leaves.labels[f];
+        return std::pair(labels, work.input_face);
+    };
+    const auto [labels, numbers] = leaves_of(flange.mesh);
+    const auto [labels_turned, numbers_turned] = leaves_of(turned);
+    EXPECT_NE(numbers, numbers_turned);
+    EXPECT_EQ(labels, labels_turned);
+}
+
 TEST(ConnectedParts, SplitsComponentsByFirstFace) {
     const mesh::WorkMesh mesh = test::work_mesh(test::joined(test::box(3), test::box(3, 5)));
     const Passage passage{&mesh};

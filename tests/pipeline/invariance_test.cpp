@@ -29,8 +29,7 @@ Vec3 turned_by(const Vec3& p, const Vec3& axis, double angle) {
 }
 
 /// `rounded`: the share of the area that keeps its region when rounding differs, and how many regions come or go. Short
-/// of .999 and 0 where a decision of the engine still hangs on rounding or numbering: tighten, never loosen. (Of the
-/// noisy flange, .9816 to .995 over twelve directions; three of them had passed .99 by luck.)
+/// of .999 and 0 where a decision of the engine still hangs on rounding or numbering: tighten, never loosen.
 struct Case {
     std::string part;
     double noise = 0;
@@ -121,7 +120,7 @@ TEST_P(Invariance, OfNumbering) {
 
 INSTANTIATE_TEST_SUITE_P(Parts, Invariance,
                          testing::Values(Case{"plate", 0, 0.999, 1}, Case{"shaft"}, Case{"flange"}, Case{"fillets"},
-                                         Case{"rounded_octahedron"}, Case{"flange", 1e-3, 0.975}));
+                                         Case{"rounded_octahedron"}, Case{"flange", 1e-3}, Case{"plate", 2e-3}));
 
 TEST(Union, OfPartsApartIsTheUnionOfTheirRegions) {
     const Shape a = can(24, 4), b = box(6, 5);
