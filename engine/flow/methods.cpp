@@ -240,6 +240,7 @@ FlowResult run_hierarchical(const FlowInput& input) {
         };
         partition::MergeRules rules;
         rules.target = std::max<std::size_t>(input.options.regions, 1);
+        rules.labels_only = true;
         partition::Merging merging = merged(rules);
         if (input.options.regions == 0 && !merging.stopped) {
             // The first merge sequence tells how far the threshold reaches; the second stops there.

@@ -227,12 +227,13 @@ class Merger {
         for (std::uint32_t i = 0; i < parent_.size(); ++i) {
             const std::uint32_t r = root(i);  // the first fragment of its region
             if (r == i) {
-                if (next != i) regions_[next] = regions_[i];
+                if (next != i && !rules_.labels_only) regions_[next] = regions_[i];
                 result.region_of[i] = static_cast<std::int32_t>(next++);
             } else {
                 result.region_of[i] = result.region_of[r];
             }
         }
+        if (rules_.labels_only) return;
         regions_.resize(next);
         result.regions = std::move(regions_);  // in its place: where little has merged, a copy takes long
     }

@@ -57,11 +57,12 @@ struct MergeRules {
     double noise = 0;
     /// When > 0 instead of those: the RMS distance of the union, sqrt(distance / area), is at most this.
     double tolerance = 0;
-    int passes = 8;  ///< rejected pairs are looked at again so often, while anything merges
+    bool labels_only = false;  ///< Merging::regions stays empty: of a million regions it is half a gigabyte to move
+    int passes = 8;            ///< rejected pairs are looked at again so often, while anything merges
 };
 
 struct Merging {
-    std::vector<std::int32_t> region_of;  ///< fragment → region 0 … regions.size()−1, by first fragment
+    std::vector<std::int32_t> region_of;  ///< fragment → region 0 … , by first fragment
     std::vector<MergeRegion> regions;
     std::vector<MergeStep> history;  ///< energies: sums of RegionScore::energy
     bool stopped = false;            ///< by control: the merges made so far stand
