@@ -67,6 +67,8 @@ double merging_factor(std::size_t faces) {
 /// surfaces that are √.1 σ apart (RMS) are one, where they have many more than so many vertices.
 constexpr double blur = 0.1, blur_vertices = 500;
 
+/// Surfaces that are two σ apart where a border runs double its price: fits of small regions are not surer than that.
+constexpr double gap_price = 0.25;
 constexpr int relax_steps = 2;
 constexpr int cut_rings = 4;
 constexpr std::size_t smallest_region = 8;
@@ -78,11 +80,12 @@ class NoisyFlow {
         const double h = noise.edge;
         const double mean_area = mesh_.total_area / static_cast<double>(std::max<std::size_t>(1, mesh_.face_count()));
         ratio_ = noise.sigma / h;
+        noise_square_ = noise.sigma * noise.sigma;
         prices_ = prices_at(ratio_);
         for (double* price : {&prices_.moment, &prices_.complete, &prices_.region, &prices_.border_share}) {
             *price *= merging_factor;
         }
-        evidence_ = noise.sigma * noise.sigma * 2 * mean_area / input.options.detail;
+        evidence_ = noise_square_ * 2 * mean_area / input.options.detail;
         // Where faces move it is the likelihood of independent vertices that counts: h²/8, with which E_d + ω E_n of a
         // triangle is ∝ Σ d² over its vertices.
         weight_ = prices_.weight * h * h;
@@ -178,7 +181,7 @@ class NoisyFlow {
         measure();
         partition::RelaxOptions straighten;
         straighten.fit.weight = weight_;
-        straighten.border_price = border_price_;
+        straighten.border.length = border_price_;
         straighten.moment_steps = 3;
         straighten.steps = -1;
         straighten.moment_fit = [weight = weight_](const quadric::Moments& m) {
@@ -287,7 +290,7 @@ class NoisyFlow {
         partition::RelaxOptions options;
         options.fit.weight = prices_.relax_weight * weight_;
         options.fit.plane_tolerance = 0;
-        options.border_price = border_price_;
+        options.border = {border_price_, gap_price / noise_square_};
         options.cut_rings = cut_rings;
         options.moment_steps = 0;
         options.steps = relax_steps;
@@ -321,7 +324,7 @@ class NoisyFlow {
     std::vector<Vec3> normals_;  ///< filtered
     const runtime::RunControl& control_;
     Passage passage_;
-    double ratio_ = 0;
+    double ratio_ = 0, noise_square_ = 0;
     double evidence_ = 0;  ///< what one parameter takes from ∫d² on pure noise: σ² times the area of a vertex
     Prices prices_;
     double weight_ = 0, border_price_ = 0, misfit_ = 0, blur_ = 0, blur_area_ = 0;

@@ -105,7 +105,7 @@ class BorderCutter {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::int32_t g = passage_.across(f, k);
                 if (g < 0 || scratch.node[static_cast<std::size_t>(g)] >= 0) continue;
-                const double price = edge_price(f, k);
+                const double price = edge_price(f, k, static_cast<std::size_t>(g), pair);
                 if (labels_[static_cast<std::size_t>(g)] == pair.a) in_b += price;
                 if (labels_[static_cast<std::size_t>(g)] == pair.b) in_a += price;
             }
@@ -121,7 +121,9 @@ class BorderCutter {
                 const auto& back = mesh_.neighbors[static_cast<std::size_t>(g)];
                 const auto slot = static_cast<std::size_t>(
                     std::find(back.begin(), back.end(), static_cast<std::int32_t>(f)) - back.begin());
-                if (slot < 3) scratch.cut.add_edge(i, k, static_cast<std::size_t>(j), slot, edge_price(f, k));
+                if (slot >= 3) continue;
+                scratch.cut.add_edge(i, k, static_cast<std::size_t>(j), slot,
+                                     edge_price(f, k, static_cast<std::size_t>(g), pair));
             }
         }
     }
@@ -131,9 +133,9 @@ class BorderCutter {
                                         mesh_.corner(f, 1), mesh_.corner(f, 2), mesh_.normals[f], mesh_.areas[f])
             .hybrid(options_.weight);
     }
-    double edge_price(std::size_t f, std::size_t k) const noexcept {
-        const auto& v = mesh_.faces[f];
-        return options_.border_price * norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]]);
+    double edge_price(std::size_t f, std::size_t k, std::size_t g, const BorderCut& pair) const noexcept {
+        return options_.border.of_edge(mesh_, f, k, g, fits_[static_cast<std::size_t>(pair.a)].proxy,
+                                       fits_[static_cast<std::size_t>(pair.b)].proxy);
     }
 
     const Passage& passage_;

@@ -1,6 +1,7 @@
 // Where the border between two regions runs best, within a band of faces around where it is.
 #pragma once
 
+#include "partition/border_price.h"
 #include "partition/leaves.h"
 #include "partition/regions.h"
 #include "quadric/region_fit.h"
@@ -13,9 +14,9 @@
 namespace quadseg::partition {
 
 struct BorderCutOptions {
-    double weight = 0.5;      ///< ω
-    double border_price = 0;  ///< of border length
-    int rings = 4;            ///< of faces on both sides that may change
+    double weight = 0.5;  ///< ω
+    BorderPrice border;
+    int rings = 4;  ///< of faces on both sides that may change
 };
 
 /// Faces of the regions a < b that change sides.

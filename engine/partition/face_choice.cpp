@@ -35,17 +35,21 @@ FaceChooser::Candidates FaceChooser::candidates(std::size_t f, quadric::EnergyBa
     for (std::size_t k = 0; k < 3; ++k) {
         if (c.other[k] >= 0) c.energy[k] = add(c.other[k]);
     }
-    if (options_.border_price > 0) add_prices(f, across, c);
+    if (options_.border.length > 0) add_prices(f, across, c);
     return c;
 }
 
 void FaceChooser::add_prices(std::size_t f, const std::array<std::int32_t, 3>& across, Candidates& c) const noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
         if (across[k] < 0) continue;
-        const double edge = options_.border_price * edge_length(mesh_, f, k);
-        if (across[k] != c.own) c.own_price += edge;
+        const auto g = static_cast<std::size_t>(passage_.across(f, k));
+        const auto price = [&](std::int32_t label) {
+            return options_.border.of_edge(mesh_, f, k, g, fits_[static_cast<std::size_t>(label)].proxy,
+                                           fits_[static_cast<std::size_t>(across[k])].proxy);
+        };
+        if (across[k] != c.own) c.own_price += price(c.own);
         for (std::size_t j = 0; j < 3; ++j) {
-            if (across[j] != across[k]) c.price[j] += edge;
+            if (c.other[j] >= 0 && c.other[j] != across[k]) c.price[j] += price(c.other[j]);
         }
     }
 }

@@ -1,6 +1,7 @@
 // Which of the regions that meet at a face explains it best: the decision that boundary relaxation is made of.
 #pragma once
 
+#include "partition/border_price.h"
 #include "partition/leaves.h"
 #include "quadric/energy_batch.h"
 #include "quadric/region_fit.h"
@@ -13,21 +14,15 @@
 
 namespace quadseg::partition {
 
-/// Edge k of face f, unit frame.
-inline double edge_length(const mesh::WorkMesh& mesh, std::size_t f, std::size_t k) noexcept {
-    const auto& v = mesh.faces[f];
-    return norm(mesh.positions[v[(k + 1) % 3]] - mesh.positions[v[k]]);
-}
-
 struct FaceChoice {
     std::int32_t label;  ///< the face's own, where nothing is gained
     double gain;         ///< by how much E falls when the face alone takes the label
 };
 
 struct ChoiceOptions {
-    double weight = 0.5;      ///< ω
-    double border_price = 0;  ///< of border length
-    double margin = 0;        ///< a face moves when it gains more than this share of its energy
+    double weight = 0.5;  ///< ω
+    BorderPrice border;
+    double margin = 0;  ///< a face moves when it gains more than this share of its energy
 };
 
 /// Decides by labels and surfaces as they are at the call. Thread-safe while nobody changes them.

@@ -211,14 +211,17 @@ class Relaxer {
         return {fit.c, fit.energy};
     }
 
-    double border_length() const {
+    double border_cost() const {
         const auto of_faces = [&](std::size_t begin, std::size_t end) {
             control_.check();
             double sum = 0;
             for (std::size_t f = begin; f < end; ++f) {
                 for (std::size_t k = 0; k < 3; ++k) {
-                    const std::int32_t other = label_across(f, k);
-                    if (other > labels_[f] && labels_[f] >= 0) sum += edge_length(mesh_, f, k);
+                    const std::int32_t own = labels_[f], other = label_across(f, k);
+                    if (own < 0 || other <= own) continue;
+                    sum += options_.border.of_edge(mesh_, f, k, static_cast<std::size_t>(passage_.across(f, k)),
+                                                   result_.fits[static_cast<std::size_t>(own)].proxy,
+                                                   result_.fits[static_cast<std::size_t>(other)].proxy);
                 }
             }
             return sum;
@@ -227,7 +230,7 @@ class Relaxer {
     }
 
     void sum_energy() {
-        result_.energy = options_.border_price > 0 ? options_.border_price * border_length() : 0;
+        result_.energy = options_.border.length > 0 ? border_cost() : 0;
         for (const quadric::RegionFit& fit : result_.fits) result_.energy += fit.total;
     }
 
@@ -307,7 +310,7 @@ class Relaxer {
     /// All pairs are cut at once; a cut holds unless another one before it changed a face that it reckoned with.
     bool cut_borders() {
         const std::vector<BorderCut> cuts = partition::cut_borders(
-            passage_, labels_, result_.fits, {options_.fit.weight, options_.border_price, options_.cut_rings},
+            passage_, labels_, result_.fits, {options_.fit.weight, options_.border, options_.cut_rings},
             border_faces(), control_);
         ++sweep_stamp_;
         std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
@@ -336,7 +339,7 @@ class Relaxer {
     /// Sweeps over the border until no face gains. Without a price of borders E is a sum over faces and all may decide
     /// at once (Jacobi); with one, neighbours take turns: the larger gain first.
     bool move_faces() {
-        const bool cut = options_.border_price > 0 && options_.cut_rings > 0 && cut_borders();
+        const bool cut = options_.border.length > 0 && options_.cut_rings > 0 && cut_borders();
         const std::vector<std::uint8_t> cut_dirty = cut ? dirty_ : std::vector<std::uint8_t>();
         return sweep(cut ? all_border_faces() : border_faces(), cut_dirty) || cut;
     }
@@ -344,10 +347,10 @@ class Relaxer {
     bool sweep(std::vector<std::uint32_t> work, const std::vector<std::uint8_t>& dirty_before) {
         std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
         if (!dirty_before.empty()) dirty_ = dirty_before;
-        const bool take_turns = options_.border_price > 0;
+        const bool take_turns = options_.border.length > 0;
         if (take_turns && gain_.empty()) gain_.assign(labels_.size(), 0);
         const FaceChooser chooser(passage_, labels_, result_.fits,
-                                  {options_.fit.weight, options_.border_price, options_.margin});
+                                  {options_.fit.weight, options_.border, options_.margin});
         std::vector<FaceChoice> decided;
         bool moved = false;
         for (int sweep = 0; sweep < most_sweeps && !work.empty(); ++sweep) {

@@ -2,6 +2,7 @@
 // explains them better. 3 to 10 times less work than flooding, and never a higher energy from merged labels.
 #pragma once
 
+#include "partition/border_price.h"
 #include "partition/leaves.h"
 #include "partition/pair_merge.h"
 #include "partition/regions.h"
@@ -28,8 +29,8 @@ struct RelaxOptions {
     /// Complete steps after moment steps: a region of which at most this share of the area changed keeps its surface.
     double settled = 0;
     quadric::RegionFitOptions fit;
-    /// Price of border length: > 0 makes borders short (Potts model), as noise asks for.
-    double border_price = 0;
+    /// A price of border length makes borders short, as noise asks for.
+    BorderPrice border;
     /// With a price of borders: the border between two regions is first cut anew within so many rings of faces; 0: not.
     int cut_rings = 0;
     /// Fits of the first steps; none: plane or quadric by least squares. Callable from several threads at once.
