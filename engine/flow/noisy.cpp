@@ -27,14 +27,14 @@ using partition::Passage;
 /// What description lengths charge. Under light noise wrong merges are rare and crumbs of chance the danger; strong
 /// noise leaves true small surfaces little evidence: what asks for much more than chance would give loses them.
 struct Prices {
-    double moment = 4;          ///< of a parameter in units of the evidence, when merging on moments …
-    double complete = 4;        ///< … and by complete fits
-    double region = 1.5;        ///< of a region as such, times ln(faces)
-    double border_share = 0.3;  ///< what removed border is worth in a merge, of its price in relaxation: all of it
-                                ///< would swallow small surfaces
-    double relax_weight = 0.15; ///< ω when faces move, of the ω of merging
-    double weight = 0.75;       ///< ω of merging, in squared edges: less over-merges, more fragments
-    double border = 2;          ///< χ² that an edge of mean length is worth
+    double moment = 4;           ///< of a parameter in units of the evidence, when merging on moments …
+    double complete = 4;         ///< … and by complete fits
+    double region = 1.5;         ///< of a region as such, times ln(faces)
+    double border_share = 0.3;   ///< what removed border is worth in a merge, of its price in relaxation: all of it
+                                 ///< would swallow small surfaces
+    double relax_weight = 0.15;  ///< ω when faces move, of the ω of merging
+    double weight = 0.75;        ///< ω of merging, in squared edges: less over-merges, more fragments
+    double border = 2;           ///< χ² that an edge of mean length is worth
 };
 /// Noise as large as edges is estimated too small (flow/noise.h), and most of E_n is it: both ω and prices rise.
 constexpr Prices light_prices, strong_prices{4, 1.5, 0.3, 0.2, 0.25}, utmost_prices{12, 4, 0.3, 0.2, 0.2, 3, 1.5};
@@ -76,7 +76,7 @@ constexpr std::size_t smallest_region = 8;
 class NoisyFlow {
   public:
     NoisyFlow(const FlowInput& input, const NoiseEstimate& noise, double merging_factor)
-        : mesh_(input.mesh), control_(input.control), passage_{&input.mesh, input.features, {}} {
+        : mesh_(input.mesh), control_(input.control), noise_(noise), passage_{&input.mesh, input.features, {}} {
         const double h = noise.edge;
         const double mean_area = mesh_.total_area / static_cast<double>(std::max<std::size_t>(1, mesh_.face_count()));
         ratio_ = noise.sigma / h;
@@ -112,11 +112,11 @@ class NoisyFlow {
         });
     }
 
-    FlowResult refine(const Labels& labels) {
+    FlowResult refine(const Labels& labels, std::vector<Vec3>&& normals) {
         labels_ = labels;
         count_ = 1 + static_cast<std::size_t>(*std::max_element(labels.begin(), labels.end()));
         return finished([&] {
-            filter_normals();
+            normals_ = normals.empty() ? softening_normals(mesh_, noise_, control_) : std::move(normals);
             judge_by_softened_mesh();
             relax();
             if (result_.partial) return;
@@ -142,11 +142,6 @@ class NoisyFlow {
         return std::move(result_);
     }
 
-    void filter_normals() {
-        const bool light = ratio_ < strong_from;
-        normals_ = filtered_normals(mesh_, light ? 1 : 2, light ? 3 : 10, control_);
-    }
-
     /// How much the filtered normals turn about each face. Leaves grow from the flattest faces on.
     std::vector<double> bends() const {
         std::vector<double> bend(mesh_.face_count(), 0);
@@ -165,12 +160,12 @@ class NoisyFlow {
     }
 
     void grow() {
-        filter_normals();
+        normals_ = noise_.strong() ? filtered_normals(mesh_, 2, 10, control_) : filtered_normals(mesh_, 1, 3, control_);
         weighed_ = denoised_mesh(mesh_, normals_, control_);
         weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
         passage_.mesh = &weighed_;
         partition::LeafOptions options;
-        options.largest = ratio_ < strong_from ? 24 : 48;
+        options.largest = noise_.strong() ? 48 : 24;
         options.smallest_coplanar = 0;
         options.normals = normals_;
         const std::vector<double> order = bends();
@@ -195,7 +190,7 @@ class NoisyFlow {
     /// Regions have been found on the denoised mesh; whether they are right, and where they end, another one says.
     void judge_by_softened_mesh() {
         weighed_ = {};  // two at once would be the job's peak of memory
-        weighed_ = softened_mesh(mesh_, normals_, ratio_, control_);
+        weighed_ = softened_mesh(mesh_, normals_, noise_, control_);
         normals_ = {};
         weighed_.areas = evidence_areas(weighed_, mesh_.total_area, control_);
         passage_.mesh = &weighed_;
@@ -323,6 +318,7 @@ class NoisyFlow {
     mesh::WorkMesh weighed_;     ///< first denoised, then softened; its areas are evidence (flow/evidence_areas.h)
     std::vector<Vec3> normals_;  ///< filtered
     const runtime::RunControl& control_;
+    const NoiseEstimate noise_;
     Passage passage_;
     double ratio_ = 0, noise_square_ = 0;
     double evidence_ = 0;  ///< what one parameter takes from ∫d² on pure noise: σ² times the area of a vertex
@@ -341,8 +337,9 @@ FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise, Scan sc
     return NoisyFlow(input, noise, scan == Scan::raw ? merging_factor(input.mesh.face_count()) : 1).run();
 }
 
-FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const Labels& labels) {
-    return NoisyFlow(input, noise, 1).refine(labels);
+FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const Labels& labels,
+                        std::vector<Vec3> normals) {
+    return NoisyFlow(input, noise, 1).refine(labels, std::move(normals));
 }
 
 }  // namespace quadseg::flow

@@ -4,6 +4,8 @@
 #include "flow/flow.h"
 #include "flow/noise.h"
 
+#include <vector>
+
 namespace quadseg::flow {
 
 /// What a simplified scan shows has been averaged: its many faces ask for no higher prices.
@@ -15,7 +17,8 @@ enum class Scan { raw, simplified };
 FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise, Scan scan = Scan::raw);
 
 /// Its second half, on the softened mesh, from connected regions found elsewhere: labels 0 … n−1, all of
-/// them in use.
-FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const partition::Labels& labels);
+/// them in use. `normals`: softening_normals() (flow/softened_mesh.h), where they are at hand; empty: found here.
+FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const partition::Labels& labels,
+                        std::vector<Vec3> normals = {});
 
 }  // namespace quadseg::flow

@@ -2,8 +2,8 @@
 
 #include "flow/coarse.h"
 #include "flow/denoised_mesh.h"
-#include "flow/filtered_normals.h"
 #include "flow/noisy.h"
+#include "flow/softened_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -43,9 +43,11 @@ void average(const mesh::WorkMesh& fine, simplify::Decimated& coarse, const runt
     }
 }
 
-simplify::Decimated simplified_scan(const FlowInput& input, bool strong, std::size_t faces) {
-    if (!strong) {
-        const std::vector<Vec3> normals = filtered_normals(input.mesh, 1, 3, input.control);
+/// `normals`: those that scans of light noise are denoised with are kept there.
+simplify::Decimated simplified_scan(const FlowInput& input, const NoiseEstimate& noise, std::size_t faces,
+                                    std::vector<Vec3>& normals) {
+    if (!noise.strong()) {
+        normals = softening_normals(input.mesh, noise, input.control);
         const std::vector<Vec3> positions = denoised_mesh(input.mesh, normals, input.control).positions;
         return simplified(input, positions, faces, no_crease);
     }
@@ -68,11 +70,12 @@ FlowResult run_noisy_coarse(const FlowInput& input, const NoiseEstimate& noise, 
         rest.sigma = std::max(rest.sigma, NoiseEstimate::noisy_from * rest.edge);
         return run_noisy(coarse, rest, Scan::simplified);
     };
+    std::vector<Vec3> normals;
     const auto simplify = [&](const FlowInput& fine) {
-        return simplified_scan(fine, noise.strong(), std::min(wanted, faces / 2));
+        return simplified_scan(fine, noise, std::min(wanted, faces / 2), normals);
     };
     const auto refine = [&](const FlowInput& fine, const partition::Labels& labels) {
-        return refine_noisy(fine, noise, labels);
+        return refine_noisy(fine, noise, labels, std::move(normals));
     };
     return run_coarse(input, simplify, flow_on_coarse, refine);
 }

@@ -1,5 +1,6 @@
 #include "flow/softened_mesh.h"
 
+#include "flow/filtered_normals.h"
 #include "flow/vertex_moves.h"
 #include "mesh/vertex_faces.h"
 #include "runtime/parallel.h"
@@ -17,8 +18,14 @@ constexpr double largest_ring_share = 0.5;
 
 }  // namespace
 
-mesh::WorkMesh softened_mesh(const mesh::WorkMesh& mesh, const std::vector<Vec3>& normals, double ratio,
+std::vector<Vec3> softening_normals(const mesh::WorkMesh& mesh, const NoiseEstimate& noise,
+                                    const runtime::RunControl& control) {
+    return noise.strong() ? filtered_normals(mesh, 2, 4, control) : filtered_normals(mesh, 1, 3, control);
+}
+
+mesh::WorkMesh softened_mesh(const mesh::WorkMesh& mesh, const std::vector<Vec3>& normals, const NoiseEstimate& noise,
                              const runtime::RunControl& control) {
+    const double ratio = noise.sigma / noise.edge;
     mesh::WorkMesh moved;
     moved.positions = mesh.positions;
     moved.faces = mesh.faces;

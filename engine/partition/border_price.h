@@ -1,6 +1,6 @@
 // What the border between two regions costs. Its length alone (Potts model) makes borders short wherever the data leave
-// them open; but surfaces of one solid also meet where they part, so a border far from where the two meet costs more. Where
-// a fillet leaves its plane no distance of single faces shows it within many edges, the two fits do.
+// them open; but surfaces of one solid also meet where they part, so a border far from where the two meet costs more.
+// Where a fillet leaves its plane no distance of single faces shows it within many edges, the two fits do.
 #pragma once
 
 #include "mesh/work_mesh.h"

@@ -12,8 +12,8 @@
 namespace quadseg::partition {
 namespace {
 
-// A leaf never crosses a block; 16K faces keep the cut borders below 1 % of the leaves. Where there is an order, for the
-// sake of a result that does not depend on the mesh's place, blocks are as large as tasks may be.
+// A leaf never crosses a block; 16K faces keep the cut borders below 1 % of the leaves. Where there is an order, for
+// the sake of a result that does not depend on the mesh's place, blocks are as large as tasks may be.
 constexpr std::size_t block_faces = 16384, ordered_block_faces = 65536;
 constexpr double coplanar_normal = 1e-6;
 constexpr double coplanar_offset = 2e-6;

@@ -31,9 +31,9 @@ struct LeafOptions {
     double angle = 8;                   ///< degrees between a face and the running mean normal of its leaf
     std::size_t largest = 128;          ///< faces of a leaf that is not exactly plane
     std::size_t smallest_coplanar = 9;  ///< exactly coplanar groups of at least so many faces are one leaf; 0: none
-    /// F' numbers: faces grow leaves, and join them, in ascending order of these, and leaves are numbered in the order in
-    /// which they grow. The same leaves however the mesh lies and is numbered, as long as it is one block.
-    /// Empty: in the order of the faces and of their edges.
+    /// F' numbers: faces grow leaves, and join them, in ascending order of these, and leaves are numbered in the order
+    /// in which they grow. The same leaves however the mesh lies and is numbered, as long as it is one block. Empty: in
+    /// the order of the faces and of their edges.
     std::span<const double> order = {};
     std::span<const Vec3> normals = {};  ///< to grow by instead of the mesh's (filtered ones on scans); empty: those
 };

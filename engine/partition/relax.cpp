@@ -310,8 +310,8 @@ class Relaxer {
     /// All pairs are cut at once; a cut holds unless another one before it changed a face that it reckoned with.
     bool cut_borders() {
         const std::vector<BorderCut> cuts = partition::cut_borders(
-            passage_, labels_, result_.fits, {options_.fit.weight, options_.border, options_.cut_rings},
-            border_faces(), control_);
+            passage_, labels_, result_.fits, {options_.fit.weight, options_.border, options_.cut_rings}, border_faces(),
+            control_);
         ++sweep_stamp_;
         std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{0});
         bool moved = false;

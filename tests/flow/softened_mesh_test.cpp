@@ -19,7 +19,8 @@ mesh::WorkMesh flange(double noise) {
 }
 
 mesh::WorkMesh softened(const mesh::WorkMesh& mesh, double ratio) {
-    return flow::softened_mesh(mesh, flow::filtered_normals(mesh, 1, 3, free_run), ratio, free_run);
+    const flow::NoiseEstimate noise{ratio, 1, 0};
+    return flow::softened_mesh(mesh, flow::softening_normals(mesh, noise, free_run), noise, free_run);
 }
 
 /// Mean square of the angle across edges of raw faces that lie nearly in a plane after averages over a wide ring.
@@ -54,8 +55,7 @@ TEST(SoftenedMesh, UnfoldsFaces) {
     EXPECT_LT(light, 0.8 * raw);
     EXPECT_LT(medium, 0.8 * light);
     EXPECT_LT(strong, 0.8 * medium);
-    const mesh::WorkMesh denoised =
-        flow::denoised_mesh(mesh, flow::filtered_normals(mesh, 1, 3, free_run), free_run);
+    const mesh::WorkMesh denoised = flow::denoised_mesh(mesh, flow::filtered_normals(mesh, 1, 3, free_run), free_run);
     EXPECT_GT(strong, folding(denoised, smooth));
 }
 
@@ -83,7 +83,8 @@ TEST(SoftenedMesh, Stops) {
     const mesh::WorkMesh mesh = flange(0.003);
     Context context;
     context.cancel();
-    EXPECT_THROW((void)flow::softened_mesh(mesh, mesh.normals, 0.5, runtime::RunControl(&context)), runtime::Stopped);
+    EXPECT_THROW((void)flow::softened_mesh(mesh, mesh.normals, {0.5, 1, 0}, runtime::RunControl(&context)),
+                 runtime::Stopped);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ const runtime::RunControl free_run(nullptr);
 /// A hexagon of six triangles about vertex 0 at height z; vertex 7 has no face.
 mesh::WorkMesh tent(double z) {
     mesh::WorkMesh mesh;
-    mesh.positions = {{0, 0, z}, {1, 0, 0}, {0.5, 1, 0}, {-0.5, 1, 0}, {-1, 0, 0}, {-0.5, -1, 0}, {0.5, -1, 0}, {9, 9, 9}};
+    mesh.positions = {{0, 0, z},  {1, 0, 0},     {0.5, 1, 0},  {-0.5, 1, 0},
+                      {-1, 0, 0}, {-0.5, -1, 0}, {0.5, -1, 0}, {9, 9, 9}};
     for (std::uint32_t k = 0; k < 6; ++k) mesh.faces.push_back({0, 1 + k, 1 + (k + 1) % 6});
     mesh.normals.assign(6, {0, 0, 1});
     return mesh;
