@@ -92,7 +92,7 @@ class NoisyFlow {
         border_price_ = prices_.border * evidence_ / h;
         const double angle = misfit_angle(noise) * std::numbers::pi / 180;
         misfit_ = angle * angle * weight_ / input.options.detail;
-        blur_ = blur * noise.sigma * noise.sigma / input.options.detail;
+        blur_ = blur * noise_square_ / input.options.detail;
         blur_area_ = blur_vertices * 2 * mean_area;
         result_.noise = noise.sigma;
     }

@@ -7,6 +7,16 @@
 #include <limits>
 
 namespace quadseg::partition {
+namespace {
+
+/// One more than the largest label; 0: none.
+std::size_t used_numbers(const Labels& labels) {
+    std::int64_t largest = -1;
+    for (const std::int32_t label : labels) largest = std::max<std::int64_t>(largest, label);
+    return static_cast<std::size_t>(largest + 1);
+}
+
+}  // namespace
 
 RegionFaces region_faces(const Labels& labels, std::size_t count) {
     RegionFaces regions;
@@ -29,9 +39,7 @@ std::size_t compact(Labels& labels) {
 }
 
 std::size_t compact(Labels& labels, std::vector<std::int32_t>& renumbered) {
-    std::int32_t largest = -1;
-    for (const std::int32_t label : labels) largest = std::max(largest, label);
-    renumbered.assign(static_cast<std::size_t>(largest + 1), -1);
+    renumbered.assign(used_numbers(labels), -1);
     std::int32_t count = 0;
     for (std::int32_t& label : labels) {
         if (label < 0) continue;
@@ -48,9 +56,7 @@ std::size_t close_gaps(Labels& labels) {
 }
 
 std::size_t close_gaps(Labels& labels, std::vector<std::int32_t>& renumbered) {
-    std::int32_t largest = -1;
-    for (const std::int32_t label : labels) largest = std::max(largest, label);
-    renumbered.assign(static_cast<std::size_t>(largest + 1), -1);
+    renumbered.assign(used_numbers(labels), -1);
     for (const std::int32_t label : labels) {
         if (label >= 0) renumbered[static_cast<std::size_t>(label)] = 0;
     }
