@@ -385,7 +385,8 @@ TEST_F(Batch, KilledAtRandomMomentsAndResumedEqualsUndisturbed) {
     // QUADSEG_KILLS: how many times (the long tier says 50).
     const char* wanted = std::getenv("QUADSEG_KILLS");
     int kills = wanted ? std::atoi(wanted) : 5;
-    for (int k = 0; k < 6; ++k) mesh("m" + std::to_string(k) + ".ply", k % 2 == 0 ? "plate" : "shaft", 500 + 100 * k);
+    for (int k = 0; k < 6; ++k)
+        mesh(std::string("m").append(std::to_string(k)).append(".ply"), k % 2 == 0 ? "plate" : "shaft", 500 + 100 * k);
     std::ofstream(folder / "meshes/bad.off") << "OFF\n3 1 0\n0 0 0\n";
     const auto start = std::chrono::steady_clock::now();
     ASSERT_EQ(run(batch("")).code, 3);
