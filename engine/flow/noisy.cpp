@@ -13,6 +13,7 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -147,7 +148,10 @@ class NoisyFlow {
         runtime::parallel_blocks(bend.size(), 16384, [&](std::size_t begin, std::size_t end) {
             control_.check();
             for (std::size_t f = begin; f < end; ++f) {
-                for (const std::int32_t g : mesh_.neighbors[f]) {
+                // In ascending order: the sum is the same to the bit whichever corner the file names first.
+                std::array<std::int32_t, 3> around = mesh_.neighbors[f];
+                std::sort(around.begin(), around.end());
+                for (const std::int32_t g : around) {
                     if (g >= 0) bend[f] += squared_norm(normals_[f] - normals_[static_cast<std::size_t>(g)]);
                 }
             }

@@ -97,19 +97,8 @@ std::uint64_t key_of(const MeshView& input, const std::uint32_t* corners, const 
     return key;
 }
 
-/// The corner that lies first by x, then y, then z: whichever the file names first.
-std::uint8_t lowest_corner(const MeshView& input, const std::uint32_t* t) noexcept {
-    const auto before = [&](std::size_t j, std::size_t k) {
-        const double *a = position(input, t[j]), *b = position(input, t[k]);
-        return std::lexicographical_compare(a, a + 3, b, b + 3);
-    };
-    const std::size_t first = before(1, 0) ? 1 : 0;
-    return static_cast<std::uint8_t>(before(2, first) ? 2 : first);
-}
-
-/// Keys of the faces with three different vertices, in face order, and their first corners.
-KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, std::vector<std::uint8_t>& first_corner,
-                     const runtime::RunControl& control) {
+/// Keys of the faces with three different vertices, in face order.
+KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
     const auto collapsed = [&](std::size_t f) { return has_repeated_index(&input.triangles[3 * f]); };
     std::vector<std::size_t> block_begin((input.face_count() + block - 1) / block);
     runtime::parallel_blocks(input.face_count(), block, [&](std::size_t begin, std::size_t end) {
@@ -124,7 +113,6 @@ KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, std::vector<
         std::size_t next = block_begin[begin / block];
         for (std::size_t f = begin; f < end; ++f) {
             if (collapsed(f)) continue;
-            first_corner[f] = lowest_corner(input, &input.triangles[3 * f]);
             keyed[next++] = {key_of(input, &input.triangles[3 * f], frame), static_cast<std::uint32_t>(f)};
         }
     });
@@ -220,9 +208,7 @@ Duplicates find_duplicates(const MeshView& input, const KeyedFaces& keyed, std::
 }  // namespace
 
 FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
-    FaceOrder order;
-    order.first_corner.resize(input.face_count());
-    KeyedFaces keyed = face_keys(input, frame, order.first_corner, control);
+    KeyedFaces keyed = face_keys(input, frame, control);
     const Digits digits(keyed.size());
     {
         KeyedFaces other(keyed.size());
@@ -238,6 +224,7 @@ FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runt
         sort_runs(input, keyed, digits.low_bits(), begins[b], begins[b + 1]);
         found[b] = find_duplicates(input, keyed, begins[b], begins[b + 1]);
     });
+    FaceOrder order;
     for (const Duplicates& d : found) order.duplicates.insert(order.duplicates.end(), d.begin(), d.end());
     std::sort(order.duplicates.begin(), order.duplicates.end());
     order.faces.resize(keyed.size());
