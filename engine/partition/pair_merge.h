@@ -62,7 +62,7 @@ struct MergeRules {
 };
 
 struct Merging {
-    std::vector<std::int32_t> region_of;  ///< fragment → region 0 … , by first fragment
+    std::vector<std::int32_t> region_of;  ///< fragment → region 0 … n−1, by first fragment
     std::vector<MergeRegion> regions;
     std::vector<MergeStep> history;  ///< energies: sums of RegionScore::energy
     bool stopped = false;            ///< by control: the merges made so far stand

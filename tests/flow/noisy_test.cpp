@@ -213,7 +213,8 @@ TEST(NoisyFlow, FindsShellAndLidOfAShakenCylinder) {
 
 TEST(NoisyFlow, FineMeshesUnderNoiseAsLargeAsTheirEdgesStayWhole) {
     // The noise was taken for half of what it is, and chance for surfaces: a hundred regions and more.
-    EXPECT_LE(run(generated("shaft", 60000, 0.005)).regions, 30U);  // of 20
+    // Of 20. (24, within a bound of 25, on the raw mesh, where the true surfaces' mean IoU was .62 and not .71.)
+    EXPECT_LE(run(generated("shaft", 60000, 0.005)).regions, 27U);
     EXPECT_LE(run(generated("plate", 60000, 0.005)).regions, 95U);  // of 54
     EXPECT_NEAR(static_cast<double>(run(generated("fillets", 60000, 0.002)).regions), 26, 3);
     // What least squares miss of a large surface was dearer than a parameter.

@@ -54,6 +54,18 @@ TEST(PairMerge, FindsTheSixSidesOfABoxAndThenStops) {
     }
 }
 
+TEST(PairMerge, LabelsAreTheSameWhereRegionsAreNotWanted) {
+    const mesh::WorkMesh mesh = test::work_mesh(test::capped_cylinder(90, 20));
+    const Passage passage{&mesh};
+    MergeRules rules;
+    rules.target = 5;
+    Labels with, without;
+    EXPECT_EQ(merge_leaves(passage, with, rules).regions.size(), 5U);
+    rules.labels_only = true;
+    EXPECT_TRUE(merge_leaves(passage, without, rules).regions.empty());
+    EXPECT_EQ(without, with);
+}
+
 TEST(PairMerge, FindsCylinderAndLid) {
     const mesh::WorkMesh mesh = test::work_mesh(test::capped_cylinder(90, 20));
     const Passage passage{&mesh};
