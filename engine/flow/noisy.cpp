@@ -13,7 +13,6 @@
 #include "runtime/parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -148,10 +147,7 @@ class NoisyFlow {
         runtime::parallel_blocks(bend.size(), 16384, [&](std::size_t begin, std::size_t end) {
             control_.check();
             for (std::size_t f = begin; f < end; ++f) {
-                // In ascending order: the sum is the same to the bit whichever corner the file names first.
-                std::array<std::int32_t, 3> around = mesh_.neighbors[f];
-                std::sort(around.begin(), around.end());
-                for (const std::int32_t g : around) {
+                for (const std::int32_t g : mesh_.neighbors[f]) {
                     if (g >= 0) bend[f] += squared_norm(normals_[f] - normals_[static_cast<std::size_t>(g)]);
                 }
             }

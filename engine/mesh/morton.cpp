@@ -97,8 +97,32 @@ std::uint64_t key_of(const MeshView& input, const std::uint32_t* corners, const 
     return key;
 }
 
-/// Keys of the faces with three different vertices, in face order.
-KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
+/// The corner that a face begins with, whichever the file names first: the one opposite its longest edge. Of two edges
+/// of that length the later one counts, which is the same in every rotated copy of the mesh; of three equal ones the
+/// corner that lies first by x, then y, then z.
+std::uint8_t first_corner_of(const MeshView& input, const std::uint32_t* t) noexcept {
+    constexpr double same_length = 1 - 1e-6;  // of squares: far above rounding, far below what a mesher varies
+    const std::array<const double*, 3> p{position(input, t[0]), position(input, t[1]), position(input, t[2])};
+    const auto squared_length = [&](std::size_t j, std::size_t k) {
+        const double x = p[j][0] - p[k][0], y = p[j][1] - p[k][1], z = p[j][2] - p[k][2];
+        return x * x + y * y + z * z;
+    };
+    const std::array<double, 3> length{squared_length(0, 1), squared_length(1, 2), squared_length(2, 0)};
+    const double longest = same_length * std::max({length[0], length[1], length[2]});
+    const std::array<bool, 3> is_longest{length[0] >= longest, length[1] >= longest, length[2] >= longest};
+    for (std::uint8_t k = 0; k < 3; ++k) {
+        if (is_longest[k] && !is_longest[k < 2 ? k + 1 : 0]) return k > 0 ? k - 1 : 2;
+    }
+    std::uint8_t first = 0;
+    for (std::uint8_t k = 1; k < 3; ++k) {
+        if (std::lexicographical_compare(p[k], p[k] + 3, p[first], p[first] + 3)) first = k;
+    }
+    return first;
+}
+
+/// Keys of the faces with three different vertices, in face order, and their first corners.
+KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, std::vector<std::uint8_t>& first_corner,
+                     const runtime::RunControl& control) {
     const auto collapsed = [&](std::size_t f) { return has_repeated_index(&input.triangles[3 * f]); };
     std::vector<std::size_t> block_begin((input.face_count() + block - 1) / block);
     runtime::parallel_blocks(input.face_count(), block, [&](std::size_t begin, std::size_t end) {
@@ -113,6 +137,7 @@ KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, const runtim
         std::size_t next = block_begin[begin / block];
         for (std::size_t f = begin; f < end; ++f) {
             if (collapsed(f)) continue;
+            first_corner[f] = first_corner_of(input, &input.triangles[3 * f]);
             keyed[next++] = {key_of(input, &input.triangles[3 * f], frame), static_cast<std::uint32_t>(f)};
         }
     });
@@ -208,7 +233,9 @@ Duplicates find_duplicates(const MeshView& input, const KeyedFaces& keyed, std::
 }  // namespace
 
 FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
-    KeyedFaces keyed = face_keys(input, frame, control);
+    FaceOrder order;
+    order.first_corner.resize(input.face_count());
+    KeyedFaces keyed = face_keys(input, frame, order.first_corner, control);
     const Digits digits(keyed.size());
     {
         KeyedFaces other(keyed.size());
@@ -224,7 +251,6 @@ FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runt
         sort_runs(input, keyed, digits.low_bits(), begins[b], begins[b + 1]);
         found[b] = find_duplicates(input, keyed, begins[b], begins[b + 1]);
     });
-    FaceOrder order;
     for (const Duplicates& d : found) order.duplicates.insert(order.duplicates.end(), d.begin(), d.end());
     std::sort(order.duplicates.begin(), order.duplicates.end());
     order.faces.resize(keyed.size());

@@ -377,7 +377,8 @@ TEST(WorkMesh, PermutedInputGivesTheSameMesh) {
         for (std::size_t k = 0; k < 3; ++k) p.positions[3 * vp[v] + k] = s.positions[3 * v + k];
     }
     for (std::size_t f = 0; f < fp.size(); ++f) {
-        for (std::size_t k = 0; k < 3; ++k) p.triangles[3 * fp[f] + k] = vp[s.triangles[3 * f + k]];
+        // Also the corner that a face begins with varies.
+        for (std::size_t k = 0; k < 3; ++k) p.triangles[3 * fp[f] + (k + f) % 3] = vp[s.triangles[3 * f + k]];
     }
     const WorkMesh q = build(p);
     EXPECT_EQ(q.faces, m.faces);

@@ -113,8 +113,7 @@ TEST_P(Invariance, OfNumbering) {
     EXPECT_EQ(broken_rule(shuffled.view(), after), "");
     std::vector<std::int32_t> back(faces);
     for (std::size_t i = 0; i < faces; ++i) back[face_order[i]] = after.labels[i];
-    EXPECT_GE(area_agreement(part_.mesh.view(), before_.labels, back),
-              GetParam().noise > 0 ? same : GetParam().rounded);
+    EXPECT_GE(area_agreement(part_.mesh.view(), before_.labels, back), 1 - 1e-12);  // less what sums round
     expect_count(after, "shuffled");
 }
 
