@@ -322,6 +322,21 @@ TEST_F(Batch, AnEarlierLogIsNotOverwritten) {
     EXPECT_EQ(fs::last_write_time(folder / "out/a.ply/labels.txt"), written);
 }
 
+TEST_F(Batch, KilledBeforeItsFirstMeshLeavesNothing) {
+    three_meshes();
+    ASSERT_EQ(run(batch("")).code, 0);
+    const auto complete = comparable(folder / "out");
+    fs::remove_all(folder / "out");
+    // While the options were written down: into the folder of what is unfinished, so that they never lie beside it.
+    fs::create_directories(folder / "out/.unfinished");
+    std::ofstream(folder / "out/.unfinished/batch.json.tmp-1-2") << "{";
+    ASSERT_EQ(run(batch("--resume --list")).code, 0);
+    EXPECT_FALSE(fs::exists(folder / "out/.unfinished"));
+    EXPECT_TRUE(fs::exists(folder / "out/batch.json"));
+    ASSERT_EQ(run(batch("--resume")).code, 0);
+    EXPECT_EQ(comparable(folder / "out"), complete);
+}
+
 TEST_F(Batch, ResumeDoesWhatIsMissingAndOnlyThat) {
     three_meshes();
     ASSERT_EQ(run(batch("")).code, 0);

@@ -64,7 +64,11 @@ void check_same_options(const std::string& folder, const WorkerSettings& setting
     mine["options"] = settings.options;
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        write_text(path, indented(mine));
+        // Made where the next run clears away what a killed one left.
+        make_folder(settings.scratch);
+        write_text(settings.scratch + "/batch.json", indented(mine));
+        fs::rename(settings.scratch + "/batch.json", path);
+        fs::remove_all(settings.scratch);
         return;
     }
     const Json theirs = Json::parse(file, nullptr, false);
@@ -186,15 +190,15 @@ int run_batch(BatchArguments& a) {
         throw Error(ErrorCode::invalid_argument,
                     log_path + ": is there from an earlier batch: --resume goes on with it; or give another folder");
     }
+    // The log is locked: what is in this scratch folder was left by a process that is gone.
+    settings.scratch = settings.output + "/.unfinished" + shard_suffix(shard);
+    fs::remove_all(settings.scratch);
     check_same_options(settings.output, settings);
     const auto rest = not_done(items, log, a.retry);
     if (a.list) {
         print_list(rest);
         return exit_done;
     }
-    // The log is locked: what is in this scratch folder was left by a process that is gone.
-    settings.scratch = settings.output + "/.unfinished" + shard_suffix(shard);
-    fs::remove_all(settings.scratch);
     settings.bounds.insert(settings.bounds.end(), {"--threads", std::to_string(threads)});
 
     std::uintmax_t bytes = 0;
