@@ -26,15 +26,16 @@ using Duplicates = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 struct FaceOrder {
     std::vector<std::uint32_t> faces;
+    std::vector<std::uint8_t> first_corner;  ///< of each of them, not as the file begins it
     Duplicates duplicates;                   ///< left out of it, by face
-    std::vector<std::uint8_t> first_corner;  ///< of every input face, not as the file begins it
 };
-/// Input faces with three different vertices, each once, in Morton order of their centroids. Ties are broken by
-/// position, then by index, so that the order hardly depends on that of the input.
+/// Input faces with three different vertices, each once, in Morton order of their centroids. Ties are broken by the
+/// positions of corners from the first one on, then by index, so that the order hardly depends on that of the input.
 FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control);
 
 /// Fills input_face, faces, input_vertex and positions, the latter still in input coordinates.
-void renumber(const MeshView& input, FaceOrder&& order, WorkMesh& mesh, const runtime::RunControl& control);
+void renumber(const MeshView& input, std::vector<std::uint32_t> order, const std::vector<std::uint8_t>& first_corner,
+              WorkMesh& mesh, const runtime::RunControl& control);
 
 struct EdgeCounts {
     std::size_t border = 0, non_manifold = 0;

@@ -45,6 +45,7 @@ std::uint64_t spread_bits(std::uint64_t x) noexcept {
 struct Keyed {
     std::uint64_t key;
     std::uint32_t face;
+    std::uint8_t first_corner;  ///< in what would be padding
 };
 
 /// Not a vector: whoever fills a part touches its memory first, all threads at once.
@@ -64,16 +65,17 @@ const double* position(const MeshView& input, std::uint32_t v) noexcept {
     return &input.positions[3 * static_cast<std::size_t>(v)];
 }
 
-/// Faces with one key: by the positions of their corners, so that a permuted input gives the same order.
-bool before_at_same_key(const MeshView& input, std::uint32_t f, std::uint32_t g) noexcept {
+/// Faces with one key: by the positions of their corners from the first one on, so that an input that is numbered
+/// differently gives the same order.
+bool before_at_same_key(const MeshView& input, const Keyed& f, const Keyed& g) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
-        const double* a = position(input, input.triangles[3 * std::size_t{f} + k]);
-        const double* b = position(input, input.triangles[3 * std::size_t{g} + k]);
+        const double* a = position(input, input.triangles[3 * std::size_t{f.face} + (f.first_corner + k) % 3]);
+        const double* b = position(input, input.triangles[3 * std::size_t{g.face} + (g.first_corner + k) % 3]);
         for (int i = 0; i < 3; ++i) {
             if (a[i] != b[i]) return a[i] < b[i];
         }
     }
-    return f < g;
+    return f.face < g.face;
 }
 
 std::array<std::uint32_t, 3> ascending(const std::uint32_t* t) noexcept {
@@ -121,8 +123,7 @@ std::uint8_t first_corner_of(const MeshView& input, const std::uint32_t* t) noex
 }
 
 /// Keys of the faces with three different vertices, in face order, and their first corners.
-KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, std::vector<std::uint8_t>& first_corner,
-                     const runtime::RunControl& control) {
+KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
     const auto collapsed = [&](std::size_t f) { return has_repeated_index(&input.triangles[3 * f]); };
     std::vector<std::size_t> block_begin((input.face_count() + block - 1) / block);
     runtime::parallel_blocks(input.face_count(), block, [&](std::size_t begin, std::size_t end) {
@@ -137,8 +138,8 @@ KeyedFaces face_keys(const MeshView& input, const UnitFrame& frame, std::vector<
         std::size_t next = block_begin[begin / block];
         for (std::size_t f = begin; f < end; ++f) {
             if (collapsed(f)) continue;
-            first_corner[f] = first_corner_of(input, &input.triangles[3 * f]);
-            keyed[next++] = {key_of(input, &input.triangles[3 * f], frame), static_cast<std::uint32_t>(f)};
+            const std::uint32_t* t = &input.triangles[3 * f];
+            keyed[next++] = {key_of(input, t, frame), static_cast<std::uint32_t>(f), first_corner_of(input, t)};
         }
     });
     return keyed;
@@ -177,7 +178,7 @@ void radix_pass(const KeyedFaces& from, KeyedFaces& to, int shift, std::size_t d
 /// Sorts the runs of equal high bits in [begin, end), which holds whole runs.
 void sort_runs(const MeshView& input, KeyedFaces& keyed, int low_bits, std::size_t begin, std::size_t end) {
     const auto less = [&](const Keyed& a, const Keyed& b) {
-        return a.key != b.key ? a.key < b.key : before_at_same_key(input, a.face, b.face);
+        return a.key != b.key ? a.key < b.key : before_at_same_key(input, a, b);
     };
     for (std::size_t i = begin, j = begin; i < end; i = j) {
         while (j < end && keyed[j].key >> low_bits == keyed[i].key >> low_bits) ++j;
@@ -230,12 +231,25 @@ Duplicates find_duplicates(const MeshView& input, const KeyedFaces& keyed, std::
     return duplicates;
 }
 
+void leave_out_duplicates(FaceOrder& order) {
+    const auto is_duplicate = [&](std::uint32_t f) {
+        const auto at = std::lower_bound(order.duplicates.begin(), order.duplicates.end(), std::pair{f, 0U});
+        return at != order.duplicates.end() && at->first == f;
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < order.faces.size(); ++i) {
+        if (is_duplicate(order.faces[i])) continue;
+        order.faces[kept] = order.faces[i];
+        order.first_corner[kept++] = order.first_corner[i];
+    }
+    order.faces.resize(kept);
+    order.first_corner.resize(kept);
+}
+
 }  // namespace
 
 FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runtime::RunControl& control) {
-    FaceOrder order;
-    order.first_corner.resize(input.face_count());
-    KeyedFaces keyed = face_keys(input, frame, order.first_corner, control);
+    KeyedFaces keyed = face_keys(input, frame, control);
     const Digits digits(keyed.size());
     {
         KeyedFaces other(keyed.size());
@@ -251,17 +265,16 @@ FaceOrder morton_order(const MeshView& input, const UnitFrame& frame, const runt
         sort_runs(input, keyed, digits.low_bits(), begins[b], begins[b + 1]);
         found[b] = find_duplicates(input, keyed, begins[b], begins[b + 1]);
     });
+    FaceOrder order;
     for (const Duplicates& d : found) order.duplicates.insert(order.duplicates.end(), d.begin(), d.end());
     std::sort(order.duplicates.begin(), order.duplicates.end());
     order.faces.resize(keyed.size());
-    runtime::parallel_for(order.faces.size(), block, [&](std::size_t i) { order.faces[i] = keyed[i].face; });
-    if (!order.duplicates.empty()) {
-        const auto is_duplicate = [&](std::uint32_t f) {
-            const auto at = std::lower_bound(order.duplicates.begin(), order.duplicates.end(), std::pair{f, 0U});
-            return at != order.duplicates.end() && at->first == f;
-        };
-        std::erase_if(order.faces, is_duplicate);
-    }
+    order.first_corner.resize(keyed.size());
+    runtime::parallel_for(keyed.size(), block, [&](std::size_t i) {
+        order.faces[i] = keyed[i].face;
+        order.first_corner[i] = keyed[i].first_corner;
+    });
+    if (!order.duplicates.empty()) leave_out_duplicates(order);
     return order;
 }
 

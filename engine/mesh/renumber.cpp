@@ -6,17 +6,18 @@
 
 namespace quadseg::mesh::build {
 
-void renumber(const MeshView& input, FaceOrder&& order, WorkMesh& mesh, const runtime::RunControl& control) {
+void renumber(const MeshView& input, std::vector<std::uint32_t> order, const std::vector<std::uint8_t>& first_corner,
+              WorkMesh& mesh, const runtime::RunControl& control) {
     constexpr std::uint32_t unseen = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> work_vertex(input.vertex_count(), unseen);
-    mesh.input_face = std::move(order.faces);
+    mesh.input_face = std::move(order);
     mesh.faces.resize(mesh.input_face.size());
     mesh.input_vertex.clear();
     mesh.input_vertex.reserve(std::min(input.vertex_count(), mesh.faces.size()));
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         if (f % block == 0) control.check();
         const std::uint32_t* t = &input.triangles[3 * std::size_t{mesh.input_face[f]}];
-        std::size_t corner = order.first_corner[mesh.input_face[f]];
+        std::size_t corner = first_corner[f];
         for (std::size_t k = 0; k < 3; ++k, corner = corner < 2 ? corner + 1 : 0) {
             std::uint32_t& w = work_vertex[t[corner]];
             if (w == unseen) {

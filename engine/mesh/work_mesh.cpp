@@ -15,13 +15,12 @@ WorkMesh build_work_mesh(const MeshView& input, const runtime::RunControl& contr
     WorkMesh mesh;
     build::measure_box(input, build::check_input(input, control), mesh, control);
     build::FaceOrder order = build::morton_order(input, mesh.frame, control);
-    const build::Duplicates duplicates = std::move(order.duplicates);
-    build::renumber(input, std::move(order), mesh, control);
+    build::renumber(input, std::move(order.faces), order.first_corner, mesh, control);
     if (mesh.face_count() == 0) throw Error(ErrorCode::empty_mesh, "no face has three different vertices");
-    mesh.report.degenerate_faces = input.face_count() - mesh.face_count() - duplicates.size();
+    mesh.report.degenerate_faces = input.face_count() - mesh.face_count() - order.duplicates.size();
 
     const build::EdgeCounts edges = build::match_edges(mesh, control);
-    mesh.report.duplicate_faces = duplicates.size();
+    mesh.report.duplicate_faces = order.duplicates.size();
     mesh.report.border_edges = edges.border;
     mesh.report.non_manifold_edges = edges.non_manifold;
 
@@ -31,7 +30,7 @@ WorkMesh build_work_mesh(const MeshView& input, const runtime::RunControl& contr
     if (edges.same_direction > 0) build::orient(mesh, control);
     if (edges.border > 0) build::stitch_borders(mesh, control);
     build::find_components(mesh, control);
-    build::find_label_sources(input, duplicates, mesh, control);
+    build::find_label_sources(input, order.duplicates, mesh, control);
 
     runtime::parallel_for(mesh.positions.size(), block,
                           [&](std::size_t v) { mesh.positions[v] = mesh.frame.to_unit(mesh.positions[v]); });

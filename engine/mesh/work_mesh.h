@@ -26,7 +26,7 @@ struct UnitFrame {
 };
 
 /// Faces in Morton order of their centroids, each from the corner opposite its longest edge on, vertices renumbered by
-/// first use: none of it depends on how the input is numbered; degenerate faces with a repeated index
+/// first use: hardly anything depends on how the input is numbered; degenerate faces with a repeated index
 /// and duplicate faces are left out (they get their label from `label_source`). Faces of zero area with three different
 /// vertices stay, with zero normal and area: they carry connectivity.
 struct WorkMesh {

@@ -101,7 +101,8 @@ class BlockGrower {
     }
 
     void grow_by_normal() {
-        const double cosine = std::cos(options_.angle * std::numbers::pi / 180);
+        const double angle = options_.angle * std::numbers::pi / 180;
+        const double cosine = std::cos(angle), seed_cosine = std::cos(2 * angle);
         for (const std::uint32_t seed : seeds()) {
             if (labels_[seed] != unlabelled || !passage_.is_active(seed) || !has_normal(seed)) continue;
             // The running mean is weighted by area, so that slivers with doubtful normals do not steer the leaf.
@@ -113,7 +114,11 @@ class BlockGrower {
                     if (!(queue_.size() < options_.largest)) break;
                     if (!is_free(g)) continue;
                     const auto u = static_cast<std::size_t>(g);
-                    if (has_normal(u) && !(dot(mean, normals_[u]) >= cosine * norm(mean))) continue;
+                    // A mean alone would wander off along a bend, one face after another.
+                    if (has_normal(u) && !(dot(mean, normals_[u]) >= cosine * norm(mean) &&
+                                           dot(normals_[seed], normals_[u]) >= seed_cosine)) {
+                        continue;
+                    }
                     mean += normals_[u] * mesh_.areas[u];
                     labels_[u] = count_;
                     queue_.push_back(static_cast<std::uint32_t>(u));

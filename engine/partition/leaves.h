@@ -28,8 +28,8 @@ struct Passage {
 };
 
 struct LeafOptions {
-    double angle = 8;                   ///< degrees between a face and the running mean normal of its leaf
-    std::size_t largest = 128;          ///< faces of a leaf that is not exactly plane
+    double angle = 8;           ///< degrees between a face and its leaf's running mean normal; twice it: its seed
+    std::size_t largest = 128;  ///< faces of a leaf that is not exactly plane
     std::size_t smallest_coplanar = 9;  ///< exactly coplanar groups of at least so many faces are one leaf; 0: none
     /// F' numbers: faces grow leaves, and join them, in ascending order of these, and leaves are numbered in the order
     /// in which they grow. The same leaves however the mesh lies and is numbered, as long as it is one block. Empty: in

@@ -388,6 +388,22 @@ TEST(WorkMesh, PermutedInputGivesTheSameMesh) {
     for (std::size_t f = 0; f < m.face_count(); ++f) ASSERT_EQ(q.input_face[f], fp[m.input_face[f]]);
 }
 
+TEST(WorkMesh, FacesOfOneCentroidHaveOneOrder) {
+    // A triangle, and the same turned by half a circle about its centroid.
+    Shape s;
+    for (const auto& [x, y] : {std::pair{0, 0}, {12, 0}, {0, 9}, {8, 6}, {-4, 6}, {8, -3}}) s.vertex(x, y, 0);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        for (std::uint32_t j = 0; j < 3; ++j) {
+            Shape p = s;
+            p.face(i, (i + 1) % 3, (i + 2) % 3);
+            p.face(3 + j, 3 + (j + 1) % 3, 3 + (j + 2) % 3);
+            const WorkMesh m = build(p);
+            EXPECT_EQ(m.input_face, (std::vector<std::uint32_t>{0, 1})) << i << j;
+            EXPECT_EQ(m.input_vertex, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5})) << i << j;
+        }
+    }
+}
+
 TEST(WorkMesh, SameAtAnyNumberOfThreads) {
     // Every repair is at work: duplicates, turned faces, soup, collapsed faces, several components.
     Shape s = joined(joined(bumpy_grid(90), soup(band(200, false))), band(33, true));

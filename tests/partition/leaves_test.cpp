@@ -44,8 +44,7 @@ TEST(Leaves, CurvedLeavesKeepTheAngleAndTheSize) {
         if (std::abs(first.z) > 0.5) continue;
         EXPECT_LE(faces.size(r), 50U);
         for (std::size_t i = faces.begin[r]; i < faces.begin[r + 1]; ++i) {
-            // Twice the angle from the mean, and what the mean moved by since they joined.
-            EXPECT_LT(angle_between(first, mesh.normals[faces.face[i]]), 0.32);
+            EXPECT_LT(angle_between(first, mesh.normals[faces.face[i]]), 0.3);
             EXPECT_LT(std::abs(mesh.normals[faces.face[i]].z), 0.5);
         }
     }

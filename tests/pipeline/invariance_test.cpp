@@ -29,7 +29,7 @@ Vec3 turned_by(const Vec3& p, const Vec3& axis, double angle) {
 }
 
 /// `rounded`: the share of the area that keeps its region when rounding differs, and how many regions come or go. Short
-/// of .999 and 0 where a decision of the engine still hangs on rounding or numbering: tighten, never loosen.
+/// of .999 and 0 where a decision of the engine still hangs on rounding: tighten, never loosen.
 struct Case {
     std::string part;
     double noise = 0;
