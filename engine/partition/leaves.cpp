@@ -102,7 +102,7 @@ class BlockGrower {
 
     void grow_by_normal() {
         const double angle = options_.angle * std::numbers::pi / 180;
-        const double cosine = std::cos(angle), seed_cosine = std::cos(2 * angle);
+        const double cosine = std::cos(angle), seed_cosine = std::cos(std::min(2 * angle, std::numbers::pi));
         for (const std::uint32_t seed : seeds()) {
             if (labels_[seed] != unlabelled || !passage_.is_active(seed) || !has_normal(seed)) continue;
             // The running mean is weighted by area, so that slivers with doubtful normals do not steer the leaf.
