@@ -6,6 +6,7 @@
 #include "exact/scene.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace quadseg::exact {
@@ -19,6 +20,10 @@ struct Candidate {
     double gap = 0;     ///< share of the border beyond which the neighbour creeps away
     double step = 0;    ///< 75 % quantile, by area, of the faces' steps, radians
 };
+
+inline void append(std::vector<Candidate>& all, std::vector<Candidate>&& more) {
+    for (Candidate& candidate : more) all.push_back(std::move(candidate));
+}
 
 /// How a face lies to a surface.
 struct FaceFit {

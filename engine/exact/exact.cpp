@@ -10,6 +10,7 @@
 #include "exact/release.h"
 #include "exact/scene.h"
 #include "exact/search.h"
+#include "exact/second_opinion.h"
 #include "exact/select.h"
 #include "exact/unite.h"
 #include "runtime/parallel.h"
@@ -24,7 +25,6 @@ namespace {
 
 /// Turn of a facet, radians: bounds of what curved surfaces tell, and what is assumed where there are none to tell.
 constexpr double least_step = 0.13, most_step = 0.9, unknown_step = 0.7;
-constexpr double suspicious_turn = 1.7;
 constexpr double clearly_looser = 3;
 
 /// Sure facets, largest first, grown to planes; a facet inside an earlier plane is none of its own.
@@ -58,33 +58,6 @@ void mark_covered(const std::vector<std::int32_t>& owner, std::vector<std::uint8
     for (std::size_t f = 0; f < owner.size(); ++f) covered[f] = owner[f] >= 0 ? 1 : 0;
 }
 
-void append(std::vector<Candidate>& all, std::vector<Candidate>&& more) {
-    for (Candidate& candidate : more) all.push_back(std::move(candidate));
-}
-
-/// A second opinion where facets turn suspiciously far: surfaces that turn less are searched beneath; selection
-/// decides.
-void ask_again(const Scene& scene, double step, std::vector<Candidate>& candidates) {
-    const auto turns = [&](const Candidate& c) {
-        return c.surface.type != SurfaceType::plane && c.step > suspicious_turn * step;
-    };
-    // Where nothing was found there is nothing that turns less either.
-    std::vector<std::uint8_t> covered(scene.mesh.face_count(), no_seed);
-    bool suspicious = false;
-    for (const Candidate& candidate : candidates) {
-        if (!turns(candidate)) continue;
-        suspicious = true;
-        for (const std::uint32_t f : candidate.faces) covered[f] = 0;
-    }
-    for (const Candidate& candidate : candidates) {
-        if (turns(candidate)) continue;
-        for (const std::uint32_t f : candidate.faces) covered[f] = explained;
-    }
-    if (!suspicious) return;
-    append(candidates, search_surfaces(scene, {.rows_only = true, .most_step = suspicious_turn * step}, covered));
-    scene.control.check();
-}
-
 /// Candidates and selection are the caller's: what is left of them when this throws Stopped.
 ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& candidates, Selection& selection) {
     const mesh::WorkMesh& mesh = scene.mesh;
@@ -96,7 +69,8 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     const double learned = learn_step(candidates);
     const double step = learned > 0 ? std::clamp(learned, least_step, most_step) : unknown_step;
     split_uneven_bands(scene, candidates);
-    ask_again(scene, step, candidates);
+    ask_for_smaller_steps(scene, step, candidates);
+    replace_loose(scene, candidates);
     selection = select(scene, candidates, step);
     mark_covered(selection.owner, covered);
     // Rounded coordinates make the first pass loose already: a second one would lay tori through free-form faces.
@@ -130,7 +104,8 @@ ExactSurfaces search_and_settle(const Scene& scene, std::vector<Candidate>& cand
     join_free_pieces(scene, state);
     absorb_exact_crumbs(scene, state);
     extend_to_borders(scene, step, state);
-    absorb_scraps(scene, state);
+    absorb_badly_trimmed(scene, step, state);
+    absorb_scraps(scene, step, state);
     if (state.region != united) unite_equal(scene, step, state);
     release_crumbs(scene, selection.noise, state);
 

@@ -15,6 +15,18 @@ namespace quadseg::exact {
 /// more.
 inline constexpr double largest_facet_turn = 75 * std::numbers::pi / 180;
 
+/// Facets of a ruled surface that turn so much further than the others of it, and by so much, are flats whose edges lie
+/// on it.
+inline constexpr double flat_to_facet = 2.5, least_flat_turn = 15 * std::numbers::pi / 180;
+
+/// A facet of several triangles (fans of single ones close the ends of rows) that turns further than facets of a ruled
+/// surface with that typical step do.
+inline bool is_flat_cut(const Scene& scene, std::size_t f, const FaceFit& fit, SurfaceType type, double typical_step) {
+    const bool ruled = type == SurfaceType::cylinder || type == SurfaceType::cone;
+    return ruled && fit.step > std::max(flat_to_facet * typical_step, least_flat_turn) &&
+           scene.facets.size(static_cast<std::size_t>(scene.facets.of_face[f])) > 1;
+}
+
 class FaceFitter {
   public:
     FaceFitter(const Scene& scene, const Surface& surface, double largest_turn = largest_facet_turn)
@@ -53,6 +65,15 @@ class FaceFitter {
             normal_part(f, normals, fit);
             return fit.angle <= fit.allowed;
         });
+    }
+
+    /// Whether the middle of a face is farther off than a surface that turns as little across it can be: a flat that a
+    /// torus is tangent to lies on it with all vertices and normals, and spans its hole.
+    bool spans_a_hole(std::size_t f, const FaceFit& fit) const {
+        const double off = std::abs(evaluate_.distance(scene_.mesh.centroid(f)));
+        const double height = std::max(static_cast<double>(scene_.heights[f]), 1e-300);
+        const double longest = 2 * scene_.mesh.areas[f] / height;
+        return off > trim_ + fit.distance + longest * (fit.step + fit.angle);
     }
 
     double vertex_distance(std::uint32_t v) const { return std::abs(evaluate_.distance(scene_.mesh.positions[v])); }

@@ -37,15 +37,45 @@ bool is_long(const Scene& scene, std::uint32_t f) {
     return 2 * scene.mesh.areas[f] > 3 * height * height;
 }
 
+constexpr double octagon = 46 * std::numbers::pi / 180, dodecagon = 31 * std::numbers::pi / 180;
+
+/// Where an edge between two facets ends, others may fold sharper than those of an octagon: a prism's edges, which go
+/// on as those of its pointed end.
+bool ends_at_sharper_folds(const Scene& scene, std::uint32_t f, int k) {
+    const mesh::WorkMesh& mesh = scene.mesh;
+    const auto facet_of = [&](std::uint32_t face) { return scene.facets.of_face[face]; };
+    const std::int32_t a = facet_of(f);
+    const std::int32_t b = facet_of(static_cast<std::uint32_t>(mesh.neighbors[f][static_cast<std::size_t>(k)]));
+    constexpr int most_faces = 64;  // around a vertex: a fan of more is no prism's
+    for (const std::uint32_t v :
+         {mesh.faces[f][static_cast<std::size_t>(k)], mesh.faces[f][static_cast<std::size_t>((k + 1) % 3)]}) {
+        std::uint32_t face = f;
+        for (int step = 0; step < most_faces; ++step) {
+            // Edge j leads to vertex v, edge j + 1 away from it: from face to face around v.
+            std::size_t j = 0;
+            while (j < 3 && mesh.faces[face][(j + 1) % 3] != v) ++j;
+            if (j == 3) break;
+            const std::int32_t next = mesh.neighbors[face][(j + 1) % 3];
+            if (next < 0 || static_cast<std::uint32_t>(next) == f) break;
+            const auto g = static_cast<std::uint32_t>(next);
+            const bool beside = facet_of(face) == a || facet_of(face) == b || facet_of(g) == a || facet_of(g) == b;
+            if (!beside && dihedral(mesh, face, g) > octagon) return true;
+            face = g;
+        }
+    }
+    return false;
+}
+
 /// Facets of one size that fold by no more than those of an octagon: a row of them may be a cylinder of eight facets.
 bool folds_alike(const Scene& scene, std::uint32_t f, int k) {
-    constexpr double octagon = 46 * std::numbers::pi / 180;
     const std::int32_t g = scene.mesh.neighbors[f][static_cast<std::size_t>(k)];
-    if (g < 0 || dihedral(scene.mesh, f, static_cast<std::size_t>(g)) > octagon) return false;
+    if (g < 0) return false;
+    const double fold = dihedral(scene.mesh, f, static_cast<std::size_t>(g));
+    if (fold > octagon) return false;
     const double a = scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[f])].area;
     const double b =
         scene.facets.facet[static_cast<std::size_t>(scene.facets.of_face[static_cast<std::size_t>(g)])].area;
-    return std::max(a, b) <= 1.1 * std::min(a, b);
+    return std::max(a, b) <= 1.1 * std::min(a, b) && !(fold > dodecagon && ends_at_sharper_folds(scene, f, k));
 }
 
 Vec3 facet_centre(const Scene& scene, std::size_t facet) {

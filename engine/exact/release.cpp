@@ -23,6 +23,9 @@ constexpr double mostly = 0.5;
 constexpr std::size_t least_strips = 6;
 /// Amid free faces a surface needs as many facets as this to be believed.
 constexpr std::size_t believable_facets = 12;
+/// … but a plane through so many vertices, all on its outline and not on two lines: no tessellation of a curved surface
+/// has such facets.
+constexpr std::size_t believable_outline = 12;
 /// In the end, when all searches are over: a good part of the border, and fewer facets than this. Planes go on over
 /// gentler folds.
 constexpr double good_part = 0.4, smooth_most = 10 * std::numbers::pi / 180;
@@ -201,6 +204,40 @@ std::vector<PlaneEvidence> judge_planes(const Scene& scene, double noise, const 
     return evidence;
 }
 
+/// Of planes: whether they are polygons of many corners rather than facets.
+std::vector<std::uint8_t> find_polygons(const Scene& scene, const Explained& state) {
+    std::vector<std::uint8_t> sure(state.surface.size(), 0);
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        if (state.region[f] < 0) continue;
+        const auto r = static_cast<std::size_t>(state.region[f]);
+        if (state.surface[r].type == SurfaceType::plane && scene.in_sure_plane(f)) sure[r] = 1;
+    }
+    std::vector<std::vector<std::uint32_t>> vertices(sure.size()), outline(sure.size());
+    std::size_t polls = 0;
+    for (std::size_t f = 0; f < state.region.size(); ++f) {
+        scene.control.check_often(polls);
+        if (state.region[f] < 0 || sure[static_cast<std::size_t>(state.region[f])] == 0) continue;
+        const auto r = static_cast<std::size_t>(state.region[f]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            vertices[r].push_back(scene.mesh.faces[f][k]);
+            const std::int32_t g = scene.mesh.neighbors[f][k];
+            if (g >= 0 && state.region[static_cast<std::size_t>(g)] == state.region[f]) continue;
+            outline[r].push_back(scene.mesh.faces[f][k]);
+            outline[r].push_back(scene.mesh.faces[f][(k + 1) % 3]);
+        }
+    }
+    const auto count = [](std::vector<std::uint32_t>& list) {
+        std::sort(list.begin(), list.end());
+        return static_cast<std::size_t>(std::unique(list.begin(), list.end()) - list.begin());
+    };
+    std::vector<std::uint8_t> polygon(sure.size(), 0);
+    for (std::size_t r = 0; r < sure.size(); ++r) {
+        const std::size_t corners = count(outline[r]);
+        polygon[r] = corners >= believable_outline && corners == count(vertices[r]) ? 1 : 0;
+    }
+    return polygon;
+}
+
 /// A triangle that is all of its plane is evidence of none where the mesh goes on gently, over a free face or another
 /// such triangle.
 void release_lone_triangles(const Scene& scene, Explained& state) {
@@ -263,11 +300,12 @@ void release_doubtful(const Scene& scene, Explained& state) {
     const std::vector<RegionBorder> borders = measure_borders(scene, state);
     std::vector<std::uint8_t> doubtful(borders.size(), 0);
     std::vector<std::uint8_t> strip(borders.size(), 0);
+    const std::vector<std::uint8_t> polygon = find_polygons(scene, state);
     for (std::size_t r = 0; r < borders.size(); ++r) {
         const RegionBorder& b = borders[r];
         const bool plane = state.surface[r].type == SurfaceType::plane;
         strip[r] = plane && b.to_strips + b.to_free > mostly * b.perimeter && b.to_strips > 0.25 * b.perimeter ? 1 : 0;
-        doubtful[r] = b.to_free > mostly * b.perimeter && b.facets < believable_facets ? 1 : 0;
+        doubtful[r] = b.to_free > mostly * b.perimeter && b.facets < believable_facets && polygon[r] == 0 ? 1 : 0;
     }
     const std::vector<std::size_t> row = row_sizes(scene, state, borders, strip);
     for (std::size_t r = 0; r < borders.size(); ++r) {

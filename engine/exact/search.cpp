@@ -40,7 +40,9 @@ class ChartSearch {
           covered_(covered),
           marks_(marks),
           chart_(scene.chart[faces_.front()]),
-          explanations_(scene, options.loose ? scene.tolerances.loose_fit : scene.tolerances.fit) {
+          explanations_(scene, options.tolerance > 0 ? options.tolerance
+                               : options.loose       ? scene.tolerances.loose_fit
+                                                     : scene.tolerances.fit) {
         std::stable_sort(faces_.begin(), faces_.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return scene_.depth[a] > scene_.depth[b]; });
     }

@@ -13,6 +13,7 @@ struct SearchOptions {
     bool rows_only = false;  ///< only seeds in rows of long facets, and no discs around them
     bool loose = false;      ///< second pass, for parts whose edge curves are approximations
     bool quadrics = false;   ///< only general quadrics
+    double tolerance = 0;    ///< of the vertices, unit frame; 0: that of the mesh
     double most_step = 10;   ///< candidates whose facets turn further are not taken, radians
 };
 

@@ -42,7 +42,7 @@ class Selector {
         std::iota(by_area_.begin(), by_area_.end(), 0U);
         std::stable_sort(by_area_.begin(), by_area_.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return candidates_[a].area > candidates_[b].area; });
-        find_noise();
+        result_.noise = noise_of(candidates_);
         demote();
         demand_small_steps();
         score_claims();
@@ -57,14 +57,6 @@ class Selector {
 
   private:
     bool is_alive(std::size_t c) const { return alive_[c] != 0; }
-
-    void find_noise() {
-        std::vector<std::pair<double, double>> medians;
-        for (std::size_t c = 0; c < candidates_.size(); ++c) {
-            if (is_alive(c)) medians.emplace_back(candidates_[c].median, candidates_[c].area);
-        }
-        result_.noise = weighted_quantile(std::move(medians), 0.5);
-    }
 
     void demote() {
         const double s0 = std::max(result_.noise, 1e-11 * scene_.tolerances.diagonal);
@@ -120,7 +112,8 @@ class Selector {
                     continue;
                 }
                 const FaceFit fit = fitter(f);
-                const bool flat_cut = !plane && fit.step > allowed_step;
+                const bool flat_cut = (!plane && fit.step > allowed_step) ||
+                                      is_flat_cut(scene_, f, fit, candidate.surface.type, candidate.step);
                 // Logarithmic: errors of trim curves must not outvote the normal.
                 const double angle = std::isinf(fit.allowed) ? 0 : 2 * fit.angle / fit.allowed;
                 const double unit = std::max(2e-7 * scene_.tolerances.diagonal, 4 * scene_.tolerances.precision);
@@ -183,6 +176,16 @@ class Selector {
 };
 
 }  // namespace
+
+double noise_of(const std::vector<Candidate>& candidates) {
+    std::vector<std::pair<double, double>> medians;
+    for (const Candidate& k : candidates) medians.emplace_back(k.median, k.area);
+    return weighted_quantile(std::move(medians), 0.5);
+}
+
+double sure_distance(const Scene& scene, double noise) {
+    return std::max({30 * noise, 1e-9 * scene.tolerances.diagonal, 10 * scene.tolerances.precision});
+}
 
 Selection select(const Scene& scene, const std::vector<Candidate>& candidates, double largest_step) {
     return Selector(scene, candidates, largest_step).run();

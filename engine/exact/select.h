@@ -14,6 +14,13 @@ struct Selection {
     double largest_step = 0;  ///< tessellation step of this mesh: what the tessellator let a facet turn, radians
 };
 
+/// Median over the claimed area of the candidates' median distances, unit frame.
+double noise_of(const std::vector<Candidate>& candidates);
+
+/// What true surfaces of a mesh with this noise stay below with the median of their vertices, unless trim curves are
+/// off.
+double sure_distance(const Scene& scene, double noise);
+
 /// `largest_step`: what a facet of this mesh may turn, radians. Candidates that are refused lose all their faces.
 Selection select(const Scene& scene, const std::vector<Candidate>& candidates, double largest_step);
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -18,6 +19,8 @@ namespace quadseg::exact {
 namespace {
 
 constexpr std::size_t sample = 1000;
+/// In tolerances for trim curves: what the worst are off by (1e-4 of the diagonal, where a modeller approximated them).
+constexpr double worst_trim = 16;
 constexpr std::size_t scrap_faces = 8;
 constexpr double enclosing_share = 0.34;
 
@@ -149,7 +152,8 @@ class Uniter {
     std::optional<Surface> common_surface(const Border& border) {
         const auto [a, b] = by_size(border);
         const double tolerance = std::max(3e-6 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision);
-        if (lies_on(b, surface(a), tolerance, 0.9)) return surface(a);
+        if (is_flat_beside(b, a)) return std::nullopt;
+        if (lies_on(b, surface(a), tolerance, 0.9) || passes_for(b, surface(a), tolerance)) return surface(a);
         // Small pieces say too little alone; together they may fit one surface, if the border between them is smooth.
         if (faces(b).size() > 64 || border.bend > std::max(largest_step_, 0.1)) return std::nullopt;
         const Surface* curved = &surface(a);
@@ -166,6 +170,30 @@ class Uniter {
         return fit.surface;
     }
 
+    /// A plane whose edges lie on a ruled surface, which its own facets follow closer.
+    bool is_flat_beside(std::int32_t plane, std::int32_t ruled) const {
+        const Surface& s = surface(ruled);
+        if (surface(plane).type != SurfaceType::plane || s.type == SurfaceType::plane) return false;
+        const FaceFitter fitter(scene_, s);
+        const std::vector<std::uint32_t>& list = faces(ruled);
+        const std::size_t stride = std::max<std::size_t>(1, list.size() / sample);
+        std::vector<std::pair<double, double>> steps;
+        double area = 0;
+        for (std::size_t i = 0; i < list.size(); i += stride) {
+            steps.emplace_back(fitter(list[i]).step, scene_.mesh.areas[list[i]]);
+            area += steps.back().second;
+        }
+        std::sort(steps.begin(), steps.end());
+        double typical = 0, below = 0;
+        for (const auto& [step, weight] : steps) {
+            typical = step;
+            below += weight;
+            if (below >= 0.75 * area) break;
+        }
+        return std::any_of(faces(plane).begin(), faces(plane).end(),
+                           [&](std::uint32_t f) { return is_flat_cut(scene_, f, fitter(f), s.type, typical); });
+    }
+
     /// `share` of the vertices within the tolerance, and nearly all of the area with a fitting normal.
     bool lies_on(std::int32_t region, const Surface& s, double tolerance, double share) const {
         const FaceFitter fitter(scene_, s);
@@ -179,11 +207,33 @@ class Uniter {
                 off += fitter.vertex_distance(v) <= tolerance ? 0 : 1;
             if (static_cast<double>(3 * tests - off) < share * static_cast<double>(3 * tests)) return false;
             const FaceFit fit = fitter(list[i]);
-            turned += fit.angle > fit.allowed ? 1 : 0;
+            turned += fit.angle > fit.allowed || fitter.spans_a_hole(list[i], fit) ? 1 : 0;
             steep += s.type != SurfaceType::plane && fit.step > 1.7 * largest_step_ ? 1 : 0;
             if (10 * turned > tests || 10 * steep > tests) return false;
         }
         return true;
+    }
+
+    /// lies_on() for a region with ends that are badly trimmed: the vertices that lie on its own surface count, if they
+    /// are a good part, and all of its faces run along the other one.
+    bool passes_for(std::int32_t region, const Surface& s, double tolerance) const {
+        const Surface& own = surface(region);
+        if (s.type != own.type || s.type == SurfaceType::plane) return false;
+        const FaceFitter fitter(scene_, s), own_fitter(scene_, own);
+        const std::vector<std::uint32_t>& list = faces(region);
+        const std::size_t stride = std::max<std::size_t>(1, list.size() / sample);
+        std::size_t corners = 0, exact = 0;
+        for (std::size_t i = 0; i < list.size(); i += stride) {
+            const FaceFit fit = fitter(list[i]);
+            if (!fit.within(worst_trim * scene_.tolerances.trim) || fit.step > 1.7 * largest_step_) return false;
+            for (const std::uint32_t v : scene_.mesh.faces[list[i]]) {
+                ++corners;
+                if (own_fitter.vertex_distance(v) > scene_.tolerances.loose_fit) continue;
+                ++exact;
+                if (fitter.vertex_distance(v) > tolerance) return false;
+            }
+        }
+        return 3 * exact >= corners;
     }
 
     void join(const Border& border, const Surface& s) {
@@ -246,6 +296,35 @@ bool explains(const Scene& scene, const Explained& state, std::int32_t region,
                        [&](std::uint32_t f) { return fitter.distance(f) <= scene.tolerances.border; });
 }
 
+double largest_distance(const Scene& scene, const Surface& surface, const std::vector<std::uint32_t>& faces) {
+    const FaceFitter fitter(scene, surface);
+    double largest = 0;
+    for (const std::uint32_t f : faces) largest = std::max(largest, fitter.distance(f));
+    return largest;
+}
+
+/// Two coplanar triangles, no smaller than a curved region's, are a flat where its surface, on which its own vertices
+/// lie, comes no nearer, or its facets turn less than they would.
+bool is_flat_beside(const Scene& scene, const Surface& curved, double largest_step, double own_distance,
+                    double face_area, const std::vector<std::uint32_t>& piece) {
+    if (curved.type == SurfaceType::plane || piece.size() < 2) return false;
+    if (scene.mesh.areas[piece[0]] + scene.mesh.areas[piece[1]] < 2 * face_area) return false;
+    const FaceFitter fitter(scene, curved);
+    const double trim = scene.tolerances.trim;
+    return std::any_of(piece.begin(), piece.end(), [&](std::uint32_t f) {
+        const FaceFit fit = fitter(f);
+        return (fit.distance > trim && own_distance <= trim) || fit.step > 1.7 * largest_step;
+    });
+}
+
+std::size_t facets_of(const Scene& scene, const std::vector<std::uint32_t>& piece) {
+    std::vector<std::int32_t> facets;
+    facets.reserve(piece.size());
+    for (const std::uint32_t f : piece) facets.push_back(scene.facets.of_face[f]);
+    std::sort(facets.begin(), facets.end());
+    return static_cast<std::size_t>(std::unique(facets.begin(), facets.end()) - facets.begin());
+}
+
 /// One facet of several faces, whose area is many times that of a face beside it.
 bool is_large_flat(const Scene& scene, const std::vector<std::uint32_t>& piece, double face_area) {
     constexpr double large = 16;
@@ -303,11 +382,36 @@ void unite_equal(const Scene& scene, double largest_step, Explained& state) {
     separate_parts(scene, state);
 }
 
-void absorb_scraps(const Scene& scene, Explained& state) {
+void absorb_badly_trimmed(const Scene& scene, double largest_step, Explained& state) {
+    constexpr double least_share = 0.2, gentle = 10 * std::numbers::pi / 180;
+    const double tolerance = worst_trim * scene.tolerances.trim;
+    for (const std::vector<std::uint32_t>& piece : free_components(scene, state, true)) {
+        scene.control.check();
+        if (facets_of(scene, piece) < 3) continue;  // a narrow plane between fillets lies as near
+        std::vector<Host> hosts = hosts_of(scene, state, piece);
+        std::stable_sort(hosts.begin(), hosts.end(), [](const Host& a, const Host& b) { return a.share > b.share; });
+        for (const Host& host : hosts) {
+            const Surface& surface = state.surface[static_cast<std::size_t>(host.region)];
+            if (host.share < least_share) break;
+            if (host.bend > gentle || surface.type == SurfaceType::plane) continue;
+            const FaceFitter fitter(scene, surface);
+            const bool lies_on = std::all_of(piece.begin(), piece.end(), [&](std::uint32_t f) {
+                const FaceFit fit = fitter(f);
+                return fit.within(tolerance) && fit.step <= 1.7 * largest_step;
+            });
+            if (!lies_on) continue;
+            for (const std::uint32_t f : piece) state.region[f] = host.region;
+            break;
+        }
+    }
+}
+
+void absorb_scraps(const Scene& scene, double largest_step, Explained& state) {
     std::vector<std::vector<std::uint32_t>> pieces = free_components(scene, state, false);
     const std::size_t free_pieces = pieces.size();
-    std::vector<double> mean_area;
-    for (auto& faces : faces_of_regions(state)) {
+    std::vector<double> mean_area, own_distance;
+    for (std::size_t r = 0; auto& faces : faces_of_regions(state)) {
+        own_distance.push_back(largest_distance(scene, state.surface[r++], faces));
         double area = 0;
         for (const std::uint32_t f : faces) area += scene.mesh.areas[f];
         mean_area.push_back(area / static_cast<double>(std::max<std::size_t>(1, faces.size())));
@@ -321,7 +425,10 @@ void absorb_scraps(const Scene& scene, Explained& state) {
         std::vector<Host> hosts = hosts_of(scene, state, piece);
         std::stable_sort(hosts.begin(), hosts.end(), [](const Host& a, const Host& b) { return a.share > b.share; });
         const auto host = std::find_if(hosts.begin(), hosts.end(), [&](const Host& h) {
-            return h.share >= enclosing_share && explains(scene, state, h.region, piece);
+            const auto r = static_cast<std::size_t>(h.region);
+            return h.share >= enclosing_share && explains(scene, state, h.region, piece) &&
+                   (i < free_pieces ||
+                    !is_flat_beside(scene, state.surface[r], largest_step, own_distance[r], mean_area[r], piece));
         });
         std::int32_t target = host != hosts.end() ? host->region : -1;
         if (target < 0 && i < free_pieces && piece.size() < 4 && !hosts.empty()) {
@@ -339,6 +446,7 @@ void absorb_scraps(const Scene& scene, Explained& state) {
             plane.point = to_array(facet.normal * facet.offset);
             target = state.add(plane);
             mean_area.push_back(0);
+            own_distance.push_back(0);
         }
         for (const std::uint32_t f : piece) state.region[f] = target;
     }

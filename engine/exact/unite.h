@@ -12,7 +12,11 @@ void unite_equal(const Scene& scene, double largest_step, Explained& state);
 /// tessellation cut off in slivers.
 void absorb_exact_crumbs(const Scene& scene, Explained& state);
 
+/// Free pieces beside a curved surface that lie along it with all faces, but end at trim curves that are farther off
+/// than trim curves usually are, join it.
+void absorb_badly_trimmed(const Scene& scene, double largest_step, Explained& state);
+
 /// Pieces of a few faces, free or barely supported, join the neighbour that encloses and explains them.
-void absorb_scraps(const Scene& scene, Explained& state);
+void absorb_scraps(const Scene& scene, double largest_step, Explained& state);
 
 }  // namespace quadseg::exact
