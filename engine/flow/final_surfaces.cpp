@@ -349,7 +349,7 @@ class Finisher {
         const Surface own = named(result);
         result.surface = own;
         if (paper_ && (options_.method != Method::quadric || result.quadric.planar())) return;
-        const bool free_form = !paper_ && r < flow_.surfaces.size() && !by_energy(r);
+        const bool free_form = !paper_ && !flow_.scan && r < flow_.surfaces.size() && !by_energy(r);
         const RegionSample few = sample.thinned(by_energy(r) ? energy_choice_points : choice_points);
         const double rounding = 1e-12 * result.extent;
         const double floor = std::max({noise_margin * flow_.noise, rounding, 3 * precision_});

@@ -32,6 +32,7 @@ struct FlowResult {
     /// Empty, or one a region: the surface that the flow verified on the vertices (unit frame); type freeform: none, to
     /// be chosen.
     std::vector<Surface> surfaces;
+    bool scan = false;  ///< regions without such a surface are judged by the noise: they need not be free-form
     /// Empty, or one a region: 1 where no vertex lies on a surface (flow/faceted.h), so that the type is chosen by what
     /// explains them best.
     std::vector<std::uint8_t> faceted;

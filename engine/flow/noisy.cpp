@@ -6,6 +6,7 @@
 #include "flow/evidence_areas.h"
 #include "flow/filtered_normals.h"
 #include "flow/softened_mesh.h"
+#include "flow/torus_merge.h"
 #include "partition/absorb.h"
 #include "partition/leaves.h"
 #include "partition/pair_merge.h"
@@ -68,14 +69,21 @@ constexpr double blur = 0.1, blur_vertices = 500;
 
 /// Surfaces that are two σ apart where a border runs double its price: fits of small regions are not surer than that.
 constexpr double gap_price = 0.25;
+/// Ratio of a torus's radii: strong noise rounds steps and chamfers, which short tori follow.
+constexpr double least_torus = 1.5, least_torus_strong = 6;
 constexpr int relax_steps = 2;
 constexpr int cut_rings = 4;
 constexpr std::size_t smallest_region = 8;
 
 class NoisyFlow {
   public:
-    NoisyFlow(const FlowInput& input, const NoiseEstimate& noise, double merging_factor)
-        : mesh_(input.mesh), control_(input.control), noise_(noise), passage_{&input.mesh, input.features, {}} {
+    /// `whole`: its result is final, not a start for refine() on a finer mesh, where all surfaces are quadrics.
+    NoisyFlow(const FlowInput& input, const NoiseEstimate& noise, double merging_factor, bool whole)
+        : mesh_(input.mesh),
+          control_(input.control),
+          noise_(noise),
+          whole_(whole),
+          passage_{&input.mesh, input.features, {}} {
         const double h = noise.edge;
         const double mean_area = mesh_.total_area / static_cast<double>(std::max<std::size_t>(1, mesh_.face_count()));
         ratio_ = noise.sigma / h;
@@ -132,11 +140,20 @@ class NoisyFlow {
             find_regions();
             if (!result_.partial) clean_up();
             if (!result_.partial) measure_noise();
+            if (!result_.partial && whole_) merge_tori();
         } catch (const runtime::Stopped&) {
             result_.partial = true;
         }
-        result_.regions = partition::compact(labels_);
+        std::vector<std::int32_t> renumbered;
+        result_.regions = partition::compact(labels_, renumbered);
         result_.labels = std::move(labels_);
+        result_.scan = true;
+        if (!result_.partial && !tori_.empty()) {
+            result_.surfaces.resize(result_.regions);
+            for (std::size_t r = 0; r < renumbered.size(); ++r) {
+                if (renumbered[r] >= 0) result_.surfaces[static_cast<std::size_t>(renumbered[r])] = tori_[r];
+            }
+        }
         if (result_.partial) result_.stop = control_.cancelled() ? StopReason::cancelled : StopReason::deadline;
         return std::move(result_);
     }
@@ -223,7 +240,7 @@ class NoisyFlow {
         control_.report(Phase::fine, 0.5, count_);
     }
 
-    void merge_completely() {
+    CompleteMergeRules complete_rules() const {
         CompleteMergeRules rules;
         rules.weight = weight_;
         rules.price = prices_.complete * evidence_;
@@ -234,8 +251,19 @@ class NoisyFlow {
         rules.misfit = misfit_;
         rules.blur = blur_;
         rules.blur_area = blur_area_;
-        count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), rules, control_);
+        return rules;
+    }
+
+    void merge_completely() {
+        count_ = merge_by_complete_fits(passage_, labels_, std::move(fits_), std::move(regions_), complete_rules(),
+                                        control_);
         control_.report(Phase::fine, 0.7, count_);
+    }
+
+    void merge_tori() {
+        const TorusMergeRules rules{complete_rules(), prices_.relax_weight * weight_, border_price_,
+                                    noise_.strong() ? least_torus_strong : least_torus};
+        tori_ = merge_into_tori(passage_, labels_, fits_, regions_, rules, control_);
     }
 
     void clean_up() {
@@ -315,6 +343,7 @@ class NoisyFlow {
     std::vector<Vec3> normals_;  ///< filtered
     const runtime::RunControl& control_;
     const NoiseEstimate noise_;
+    const bool whole_;
     Passage passage_;
     double ratio_ = 0, noise_square_ = 0;
     double evidence_ = 0;  ///< what one parameter takes from ∫d² on pure noise: σ² times the area of a vertex
@@ -324,18 +353,20 @@ class NoisyFlow {
     std::size_t count_ = 0;
     std::vector<partition::MergeRegion> regions_;
     std::vector<quadric::RegionFit> fits_;
+    std::vector<Surface> tori_;  ///< of the regions
     FlowResult result_;
 };
 
 }  // namespace
 
 FlowResult run_noisy(const FlowInput& input, const NoiseEstimate& noise, Scan scan) {
-    return NoisyFlow(input, noise, scan == Scan::raw ? merging_factor(input.mesh.face_count()) : 1).run();
+    const bool raw = scan == Scan::raw;
+    return NoisyFlow(input, noise, raw ? merging_factor(input.mesh.face_count()) : 1, raw).run();
 }
 
 FlowResult refine_noisy(const FlowInput& input, const NoiseEstimate& noise, const Labels& labels,
                         std::vector<Vec3> normals) {
-    return NoisyFlow(input, noise, 1).refine(labels, std::move(normals));
+    return NoisyFlow(input, noise, 1, true).refine(labels, std::move(normals));
 }
 
 }  // namespace quadseg::flow

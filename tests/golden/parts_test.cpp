@@ -68,8 +68,15 @@ TEST(NoisyParts, KeepTheNamesOfTheirSurfaces) {
                              [&](const Region& r) { return r.surface.type == type; });
     };
     EXPECT_GE(count(SurfaceType::cylinder), 9);
-    EXPECT_GE(count(SurfaceType::cone), 3);
+    EXPECT_GE(count(SurfaceType::torus), 1);
     EXPECT_LE(count(SurfaceType::freeform), 3);
+    std::size_t named = 0;
+    for (std::size_t f = 0; f < s.labels.size(); ++f) {
+        const SurfaceType found = s.regions[static_cast<std::size_t>(s.labels[f])].surface.type;
+        named += found == flange.surfaces[static_cast<std::size_t>(flange.truth[f])].surface.type ? 1 : 0;
+    }
+    // A cone found beside pieces of the fillet counted as one of three before.
+    EXPECT_GE(static_cast<double>(named), 0.975 * static_cast<double>(s.labels.size()));
 }
 
 }  // namespace
