@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -141,7 +142,11 @@ class TorusMerger {
     }
     double energy(const SurfaceEvaluator& torus, const std::vector<std::uint32_t>& faces) const {
         double sum = 0;
-        for (const std::uint32_t f : faces) sum += energy(torus, f, rules_.merge.weight);
+        std::size_t polls = 0;
+        for (const std::uint32_t f : faces) {
+            control_.check_often(polls);
+            sum += energy(torus, f, rules_.merge.weight);
+        }
         return sum;
     }
 
@@ -249,14 +254,20 @@ class TorusMerger {
     void unite(const Pair& p) {
         Part &a = parts_[p.a], &b = parts_[p.b];
         for (const std::uint32_t f : b.faces) labels_[f] = static_cast<std::int32_t>(p.a);
-        a.faces.insert(a.faces.end(), b.faces.begin(), b.faces.end());
-        std::sort(a.faces.begin(), a.faces.end());
+        a.faces = merged(a.faces, b.faces);
         a.length += b.length + p.rise;
         a.area += b.area;
         a.torus = p.torus;
         a.plane = false;
         b.faces = {};
         b.area = 0;
+    }
+
+    static std::vector<std::uint32_t> merged(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+        std::vector<std::uint32_t> both;
+        both.reserve(a.size() + b.size());
+        std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+        return both;
     }
 
     double energy_in(const Part& part, std::size_t f) const {
@@ -306,21 +317,33 @@ class TorusMerger {
         const std::vector<std::uint8_t>& side = cut_.solve();
         std::size_t moved = 0;
         for (std::size_t i = 0; i < band.size(); ++i) {
-            const std::int32_t label = side[i] == 0 ? a : b;
-            moved += labels_[band[i]] != label ? 1 : 0;
-            labels_[band[i]] = label;
             node_[band[i]] = -1;
+            moved += relabel(band[i], side[i] == 0 ? a : b) ? 1 : 0;
         }
-        if (moved == 0) return false;
-        keep_connected(p);
+        try {
+            if (moved > 0) keep_connected(p);
+        } catch (const runtime::Stopped&) {
+            for (; !relabelled_.empty(); relabelled_.pop_back())
+                labels_[relabelled_.back().first] = relabelled_.back().second;
+            throw;
+        }
+        relabelled_.clear();
+        return moved > 0;
+    }
+    bool relabel(std::uint32_t f, std::int32_t label) {
+        if (labels_[f] == label) return false;
+        relabelled_.emplace_back(f, labels_[f]);
+        labels_[f] = label;
         return true;
     }
 
     std::vector<std::uint32_t> band_of(std::int32_t a, std::int32_t b) {
         std::vector<std::uint32_t> band;
+        std::size_t polls = 0;
         for (const std::int32_t own : {a, b}) {
             const std::int32_t other = own == a ? b : a;
             for (const std::uint32_t f : parts_[static_cast<std::size_t>(own)].faces) {
+                control_.check_often(polls);
                 for (std::size_t k = 0; k < 3 && node_[f] < 0; ++k) {
                     const std::int32_t g = passage_.across(f, k);
                     if (g < 0 || labels_[static_cast<std::size_t>(g)] != other) continue;
@@ -348,27 +371,30 @@ class TorusMerger {
 
     /// Lists the faces of both regions anew; all but the largest part of each goes to the other one.
     void keep_connected(const Pair& p) {
-        std::vector<std::uint32_t> both = parts_[p.a].faces;
-        both.insert(both.end(), parts_[p.b].faces.begin(), parts_[p.b].faces.end());
-        std::sort(both.begin(), both.end());
+        const std::vector<std::uint32_t> both = merged(parts_[p.a].faces, parts_[p.b].faces);
         for (int round = 0; round < 2; ++round) {
             for (const std::uint32_t r : {p.a, p.b}) give_islands_away(both, r, r == p.a ? p.b : p.a);
         }
-        parts_[p.a].faces.clear();
-        parts_[p.b].faces.clear();
+        std::vector<std::uint32_t> in_a, in_b;
+        std::size_t polls = 0;
         for (const std::uint32_t f : both) {
-            parts_[labels_[f] == static_cast<std::int32_t>(p.a) ? p.a : p.b].faces.push_back(f);
+            control_.check_often(polls);
+            (labels_[f] == static_cast<std::int32_t>(p.a) ? in_a : in_b).push_back(f);
         }
+        parts_[p.a].faces = std::move(in_a);
+        parts_[p.b].faces = std::move(in_b);
     }
     void give_islands_away(const std::vector<std::uint32_t>& both, std::uint32_t from, std::uint32_t to) {
         const auto own = static_cast<std::int32_t>(from);
         std::vector<std::vector<std::uint32_t>> parts;
-        std::size_t largest = 0;
+        std::size_t largest = 0, polls = 0;
         for (const std::uint32_t seed : both) {
+            control_.check_often(polls);
             if (labels_[seed] != own || node_[seed] >= 0) continue;
             std::vector<std::uint32_t> part{seed};
             node_[seed] = 0;
             for (std::size_t i = 0; i < part.size(); ++i) {
+                control_.check_often(polls);
                 for (std::size_t k = 0; k < 3; ++k) {
                     const std::int32_t g = passage_.across(part[i], k);
                     if (g < 0 || labels_[static_cast<std::size_t>(g)] != own || node_[static_cast<std::size_t>(g)] >= 0)
@@ -383,7 +409,7 @@ class TorusMerger {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             for (const std::uint32_t f : parts[i]) {
                 node_[f] = -1;
-                if (i != largest) labels_[f] = static_cast<std::int32_t>(to);
+                if (i != largest) (void)relabel(f, static_cast<std::int32_t>(to));
             }
         }
     }
@@ -397,6 +423,8 @@ class TorusMerger {
     std::vector<Pair> pairs_;
     partition::BandCut cut_;
     std::vector<std::int32_t> node_;  ///< of a face; −1 between the steps
+    /// What the present cut has changed: faces with their labels before.
+    std::vector<std::pair<std::uint32_t, std::int32_t>> relabelled_;
 };
 
 }  // namespace
