@@ -90,6 +90,17 @@ std::vector<Vec3> vertices_of(const Scene& scene, std::span<const std::uint32_t>
     return points;
 }
 
+double typical_step(std::vector<std::pair<double, double>> steps) {
+    double total = 0, below = 0;
+    for (const auto& [step, area] : steps) total += area;
+    std::sort(steps.begin(), steps.end());
+    for (const auto& [step, area] : steps) {
+        below += area;
+        if (below >= 0.75 * total) return step;
+    }
+    return steps.empty() ? 0 : steps.back().first;
+}
+
 void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks) {
     const FaceFitter fitter(scene, candidate.surface);
     std::vector<double> distances;
@@ -110,22 +121,11 @@ void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks) {
     candidate.gap = gap_share(scene, fitter, candidate, marks);
     // By area: a surface laid through the rims of three bands turns most across the widest of them.
     std::vector<std::pair<double, double>> steps;
-    double stepped_area = 0;
     const std::size_t stride = std::max<std::size_t>(1, candidate.faces.size() / fit_sample);
     for (std::size_t i = 0; i < candidate.faces.size(); i += stride) {
         steps.emplace_back(fitter(candidate.faces[i]).step, scene.mesh.areas[candidate.faces[i]]);
-        stepped_area += steps.back().second;
     }
-    std::sort(steps.begin(), steps.end());
-    candidate.step = steps.empty() ? 0 : steps.back().first;
-    double below = 0;
-    for (const auto& [step, area] : steps) {
-        below += area;
-        if (below >= 0.75 * stepped_area) {
-            candidate.step = step;
-            break;
-        }
-    }
+    candidate.step = typical_step(std::move(steps));
 }
 
 Candidate grow(const Scene& scene, const Surface& start, std::span<const std::uint32_t> patch, double largest_turn,

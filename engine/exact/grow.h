@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace quadseg::exact {
@@ -26,5 +27,9 @@ Candidate grow(const Scene& scene, const Surface& start, std::span<const std::ui
 
 /// Fills facets, area, median, gap and step of a candidate whose surface and faces are set.
 void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks);
+
+/// 75 % quantile by area of faces' (step, area). By area: a surface laid through the rims of three bands turns most
+/// across the widest of them.
+double typical_step(std::vector<std::pair<double, double>> steps);
 
 }  // namespace quadseg::exact

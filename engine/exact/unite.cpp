@@ -152,8 +152,10 @@ class Uniter {
     std::optional<Surface> common_surface(const Border& border) {
         const auto [a, b] = by_size(border);
         const double tolerance = std::max(3e-6 * scene_.tolerances.diagonal, 10 * scene_.tolerances.precision);
-        if (is_flat_beside(b, a)) return std::nullopt;
-        if (lies_on(b, surface(a), tolerance, 0.9) || passes_for(b, surface(a), tolerance)) return surface(a);
+        if (lies_on(b, surface(a), tolerance, 0.9) || passes_for(b, surface(a), tolerance)) {
+            if (is_flat_on(a, b)) return std::nullopt;
+            return surface(a);
+        }
         // Small pieces say too little alone; together they may fit one surface, if the border between them is smooth.
         if (faces(b).size() > 64 || border.bend > std::max(largest_step_, 0.1)) return std::nullopt;
         const Surface* curved = &surface(a);
@@ -171,25 +173,16 @@ class Uniter {
     }
 
     /// A plane whose edges lie on a ruled surface, which its own facets follow closer.
-    bool is_flat_beside(std::int32_t plane, std::int32_t ruled) const {
+    bool is_flat_on(std::int32_t ruled, std::int32_t plane) const {
         const Surface& s = surface(ruled);
         if (surface(plane).type != SurfaceType::plane || s.type == SurfaceType::plane) return false;
         const FaceFitter fitter(scene_, s);
         const std::vector<std::uint32_t>& list = faces(ruled);
         const std::size_t stride = std::max<std::size_t>(1, list.size() / sample);
         std::vector<std::pair<double, double>> steps;
-        double area = 0;
-        for (std::size_t i = 0; i < list.size(); i += stride) {
+        for (std::size_t i = 0; i < list.size(); i += stride)
             steps.emplace_back(fitter(list[i]).step, scene_.mesh.areas[list[i]]);
-            area += steps.back().second;
-        }
-        std::sort(steps.begin(), steps.end());
-        double typical = 0, below = 0;
-        for (const auto& [step, weight] : steps) {
-            typical = step;
-            below += weight;
-            if (below >= 0.75 * area) break;
-        }
+        const double typical = typical_step(std::move(steps));
         return std::any_of(faces(plane).begin(), faces(plane).end(),
                            [&](std::uint32_t f) { return is_flat_cut(scene_, f, fitter(f), s.type, typical); });
     }
@@ -299,21 +292,26 @@ bool explains(const Scene& scene, const Explained& state, std::int32_t region,
 double largest_distance(const Scene& scene, const Surface& surface, const std::vector<std::uint32_t>& faces) {
     const FaceFitter fitter(scene, surface);
     double largest = 0;
-    for (const std::uint32_t f : faces) largest = std::max(largest, fitter.distance(f));
+    std::size_t polls = 0;
+    for (const std::uint32_t f : faces) {
+        scene.control.check_often(polls);
+        largest = std::max(largest, fitter.distance(f));
+    }
     return largest;
 }
 
 /// Two coplanar triangles, no smaller than a curved region's, are a flat where its surface, on which its own vertices
 /// lie, comes no nearer, or its facets turn less than they would.
-bool is_flat_beside(const Scene& scene, const Surface& curved, double largest_step, double own_distance,
-                    double face_area, const std::vector<std::uint32_t>& piece) {
+template <class OwnDistance>
+bool is_flat_scrap(const Scene& scene, const Surface& curved, double largest_step, const OwnDistance& own_distance,
+                   double face_area, const std::vector<std::uint32_t>& piece) {
     if (curved.type == SurfaceType::plane || piece.size() < 2) return false;
     if (scene.mesh.areas[piece[0]] + scene.mesh.areas[piece[1]] < 2 * face_area) return false;
     const FaceFitter fitter(scene, curved);
     const double trim = scene.tolerances.trim;
     return std::any_of(piece.begin(), piece.end(), [&](std::uint32_t f) {
         const FaceFit fit = fitter(f);
-        return (fit.distance > trim && own_distance <= trim) || fit.step > 1.7 * largest_step;
+        return fit.step > 1.7 * largest_step || (fit.distance > trim && own_distance() <= trim);
     });
 }
 
@@ -409,14 +407,20 @@ void absorb_badly_trimmed(const Scene& scene, double largest_step, Explained& st
 void absorb_scraps(const Scene& scene, double largest_step, Explained& state) {
     std::vector<std::vector<std::uint32_t>> pieces = free_components(scene, state, false);
     const std::size_t free_pieces = pieces.size();
-    std::vector<double> mean_area, own_distance;
-    for (std::size_t r = 0; auto& faces : faces_of_regions(state)) {
-        own_distance.push_back(largest_distance(scene, state.surface[r++], faces));
+    const std::vector<std::vector<std::uint32_t>> regions = faces_of_regions(state);
+    std::vector<double> mean_area;
+    std::vector<std::optional<double>> known_distance(regions.size());
+    const auto own_distance = [&](std::size_t r) {
+        if (r >= regions.size()) return 0.0;
+        if (!known_distance[r]) known_distance[r] = largest_distance(scene, state.surface[r], regions[r]);
+        return *known_distance[r];
+    };
+    for (const std::vector<std::uint32_t>& faces : regions) {
         double area = 0;
         for (const std::uint32_t f : faces) area += scene.mesh.areas[f];
         mean_area.push_back(area / static_cast<double>(std::max<std::size_t>(1, faces.size())));
         const bool tiny = faces.size() <= 2 && !faces.empty();
-        if (tiny) pieces.push_back(std::move(faces));
+        if (tiny) pieces.push_back(faces);
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         scene.control.check();
@@ -428,7 +432,8 @@ void absorb_scraps(const Scene& scene, double largest_step, Explained& state) {
             const auto r = static_cast<std::size_t>(h.region);
             return h.share >= enclosing_share && explains(scene, state, h.region, piece) &&
                    (i < free_pieces ||
-                    !is_flat_beside(scene, state.surface[r], largest_step, own_distance[r], mean_area[r], piece));
+                    !is_flat_scrap(
+                        scene, state.surface[r], largest_step, [&] { return own_distance(r); }, mean_area[r], piece));
         });
         std::int32_t target = host != hosts.end() ? host->region : -1;
         if (target < 0 && i < free_pieces && piece.size() < 4 && !hosts.empty()) {
@@ -446,7 +451,6 @@ void absorb_scraps(const Scene& scene, double largest_step, Explained& state) {
             plane.point = to_array(facet.normal * facet.offset);
             target = state.add(plane);
             mean_area.push_back(0);
-            own_distance.push_back(0);
         }
         for (const std::uint32_t f : piece) state.region[f] = target;
     }
