@@ -119,7 +119,6 @@ void measure_candidate(const Scene& scene, Candidate& candidate, Marks& marks) {
     std::sort(facets.begin(), facets.end());
     candidate.facets = static_cast<std::size_t>(std::unique(facets.begin(), facets.end()) - facets.begin());
     candidate.gap = gap_share(scene, fitter, candidate, marks);
-    // By area: a surface laid through the rims of three bands turns most across the widest of them.
     std::vector<std::pair<double, double>> steps;
     const std::size_t stride = std::max<std::size_t>(1, candidate.faces.size() / fit_sample);
     for (std::size_t i = 0; i < candidate.faces.size(); i += stride) {

@@ -204,20 +204,23 @@ std::vector<PlaneEvidence> judge_planes(const Scene& scene, double noise, const 
     return evidence;
 }
 
-/// Of planes: whether they are polygons of many corners rather than facets.
-std::vector<std::uint8_t> find_polygons(const Scene& scene, const Explained& state) {
-    std::vector<std::uint8_t> sure(state.surface.size(), 0);
-    for (std::size_t f = 0; f < state.region.size(); ++f) {
-        if (state.region[f] < 0) continue;
-        const auto r = static_cast<std::size_t>(state.region[f]);
-        if (state.surface[r].type == SurfaceType::plane && scene.in_sure_plane(f)) sure[r] = 1;
+/// Regions are no longer doubtful that are planes of many corners rather than facets.
+void trust_polygons(const Scene& scene, const Explained& state, std::vector<std::uint8_t>& doubtful) {
+    std::vector<std::uint8_t> asked(doubtful.size(), 0);
+    bool any = false;
+    for (std::size_t r = 0; r < asked.size(); ++r) {
+        asked[r] = doubtful[r] != 0 && state.surface[r].type == SurfaceType::plane ? 1 : 0;
+        any = any || asked[r] != 0;
     }
-    std::vector<std::vector<std::uint32_t>> vertices(sure.size()), outline(sure.size());
+    if (!any) return;
+    std::vector<std::uint8_t> sure(asked.size(), 0);
+    std::vector<std::vector<std::uint32_t>> vertices(asked.size()), outline(asked.size());
     std::size_t polls = 0;
     for (std::size_t f = 0; f < state.region.size(); ++f) {
         scene.control.check_often(polls);
-        if (state.region[f] < 0 || sure[static_cast<std::size_t>(state.region[f])] == 0) continue;
+        if (state.region[f] < 0 || asked[static_cast<std::size_t>(state.region[f])] == 0) continue;
         const auto r = static_cast<std::size_t>(state.region[f]);
+        if (scene.in_sure_plane(f)) sure[r] = 1;
         for (std::size_t k = 0; k < 3; ++k) {
             vertices[r].push_back(scene.mesh.faces[f][k]);
             const std::int32_t g = scene.mesh.neighbors[f][k];
@@ -230,12 +233,11 @@ std::vector<std::uint8_t> find_polygons(const Scene& scene, const Explained& sta
         std::sort(list.begin(), list.end());
         return static_cast<std::size_t>(std::unique(list.begin(), list.end()) - list.begin());
     };
-    std::vector<std::uint8_t> polygon(sure.size(), 0);
-    for (std::size_t r = 0; r < sure.size(); ++r) {
+    for (std::size_t r = 0; r < asked.size(); ++r) {
+        if (sure[r] == 0) continue;
         const std::size_t corners = count(outline[r]);
-        polygon[r] = corners >= believable_outline && corners == count(vertices[r]) ? 1 : 0;
+        if (corners >= believable_outline && corners == count(vertices[r])) doubtful[r] = 0;
     }
-    return polygon;
 }
 
 /// A triangle that is all of its plane is evidence of none where the mesh goes on gently, over a free face or another
@@ -300,13 +302,13 @@ void release_doubtful(const Scene& scene, Explained& state) {
     const std::vector<RegionBorder> borders = measure_borders(scene, state);
     std::vector<std::uint8_t> doubtful(borders.size(), 0);
     std::vector<std::uint8_t> strip(borders.size(), 0);
-    const std::vector<std::uint8_t> polygon = find_polygons(scene, state);
     for (std::size_t r = 0; r < borders.size(); ++r) {
         const RegionBorder& b = borders[r];
         const bool plane = state.surface[r].type == SurfaceType::plane;
         strip[r] = plane && b.to_strips + b.to_free > mostly * b.perimeter && b.to_strips > 0.25 * b.perimeter ? 1 : 0;
-        doubtful[r] = b.to_free > mostly * b.perimeter && b.facets < believable_facets && polygon[r] == 0 ? 1 : 0;
+        doubtful[r] = b.to_free > mostly * b.perimeter && b.facets < believable_facets ? 1 : 0;
     }
+    trust_polygons(scene, state, doubtful);
     const std::vector<std::size_t> row = row_sizes(scene, state, borders, strip);
     for (std::size_t r = 0; r < borders.size(); ++r) {
         if (strip[r] != 0 && row[r] >= least_strips) doubtful[r] = 1;

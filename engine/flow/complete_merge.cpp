@@ -1,6 +1,7 @@
 #include "flow/complete_merge.h"
 
 #include "flow/description_length.h"
+#include "flow/merge_rounds.h"
 #include "quadric/fit.h"
 #include "quadric/ladder.h"
 #include "runtime/parallel.h"
@@ -13,8 +14,6 @@ namespace {
 
 using partition::MergeRegion;
 
-constexpr std::size_t face_grain = 16384;
-
 struct Part {
     MergeRegion moments;
     quadric::RegionFit fit;
@@ -23,16 +22,7 @@ struct Part {
     double length = 0;             ///< of its description
 };
 
-struct Pair {
-    std::uint32_t a = 0, b = 0;
-    double border = 0;  ///< shared length
-    double rise = 0;    ///< of the description length
-    bool measured = false;
-};
-
-bool by_regions(const Pair& x, const Pair& y) noexcept {
-    return x.a != y.a ? x.a < y.a : x.b < y.b;
-}
+using Pair = MergePair;
 
 class CompleteMerger {
   public:
@@ -55,7 +45,7 @@ class CompleteMerger {
     }
 
     std::size_t run() {
-        find_pairs();
+        pairs_ = merge_pairs_of<Pair>(passage_, labels_, control_);
         while (merge_round()) {
         }
         return partition::close_gaps(labels_);
@@ -68,40 +58,6 @@ class CompleteMerger {
     void score(MergeRegion& region) const noexcept {
         const PricedFit fit = fit_priced(region.moments, rules_.weight, rules_.price);
         region.score = {fit.length, fit.energy, fit.parameters};
-    }
-
-    void find_pairs() {
-        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
-            control_.check();
-            for (std::size_t f = begin; f < end; ++f) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const std::int32_t g = passage_.across(f, k);
-                    if (g < 0) continue;
-                    const std::int32_t a = labels_[f], b = labels_[static_cast<std::size_t>(g)];
-                    if (a < 0 || b <= a) continue;
-                    const auto& v = mesh_.faces[f];
-                    found.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                                     norm(mesh_.positions[v[(k + 1) % 3]] - mesh_.positions[v[k]])});
-                }
-            }
-        };
-        pairs_ = runtime::collect_blocks<Pair>(labels_.size(), face_grain, find);
-        unite_equal_pairs();
-    }
-
-    /// Sums the borders of equal pairs in the order they stand in. Pairs become equal only by a merge, and those are to
-    /// be measured again anyway.
-    void unite_equal_pairs() {
-        std::stable_sort(pairs_.begin(), pairs_.end(), by_regions);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < pairs_.size(); ++i) {
-            if (kept > 0 && pairs_[kept - 1].a == pairs_[i].a && pairs_[kept - 1].b == pairs_[i].b) {
-                pairs_[kept - 1].border += pairs_[i].border;
-            } else {
-                pairs_[kept++] = pairs_[i];
-            }
-        }
-        pairs_.resize(kept);
     }
 
     double allowance(const Pair& p) const noexcept {
@@ -175,53 +131,17 @@ class CompleteMerger {
     }
 
     bool merge_round() {
-        std::vector<std::uint32_t> unknown;
-        for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
-            if (!pairs_[i].measured) unknown.push_back(i);
-        }
-        runtime::parallel_for(unknown.size(), 1, [&](std::size_t i) {
-            control_.check();
-            Pair& p = pairs_[unknown[i]];
-            p.rise = rise_of(p);
-            p.measured = true;
-        });
-        std::vector<std::uint32_t> order;
-        for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
-            if (pairs_[i].rise <= allowance(pairs_[i])) order.push_back(i);
-        }
-        const auto merit = [&](std::uint32_t i) { return pairs_[i].rise - allowance(pairs_[i]); };
-        std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
-            const double mx = merit(x), my = merit(y);
-            return mx != my ? mx < my : x < y;
-        });
-        // A region takes part in one merge a round, with its best partner.
-        std::vector<std::uint8_t> taken(parts_.size(), 0);
-        std::vector<Pair> merges;
-        for (const std::uint32_t i : order) {
-            const Pair& p = pairs_[i];
-            if (taken[p.a] == 0 && taken[p.b] == 0) merges.push_back(p);
-            taken[p.a] = taken[p.b] = 1;
-        }
+        measure_pairs(
+            pairs_, [&](Pair& p) { p.rise = rise_of(p); }, control_);
+        const std::vector<Pair> merges = best_merges(
+            pairs_, parts_.size(), [&](const Pair& p) { return p.rise <= allowance(p); },
+            [&](const Pair& p) { return p.rise - allowance(p); });
         if (merges.empty()) return false;
-        std::vector<std::uint32_t> into(parts_.size());
-        for (std::uint32_t r = 0; r < into.size(); ++r) into[r] = r;
-        std::vector<std::uint8_t> changed(parts_.size(), 0);
-        for (const Pair& p : merges) {
-            into[p.b] = p.a;
-            changed[p.a] = changed[p.b] = 1;
-        }
         runtime::parallel_for(merges.size(), 1, [&](std::size_t i) {
             control_.check();
             unite(merges[i]);
         });
-        for (Pair& p : pairs_) {
-            if (changed[p.a] != 0 || changed[p.b] != 0) p.measured = false;
-            const std::uint32_t a = into[p.a], b = into[p.b];
-            p.a = std::min(a, b);
-            p.b = std::max(a, b);
-        }
-        std::erase_if(pairs_, [](const Pair& p) { return p.a == p.b; });
-        unite_equal_pairs();
+        rename_merged(pairs_, parts_.size(), merges);
         return true;
     }
 

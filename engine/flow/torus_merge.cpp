@@ -1,6 +1,7 @@
 #include "flow/torus_merge.h"
 
 #include "flow/description_length.h"
+#include "flow/merge_rounds.h"
 #include "flow/region_sample.h"
 #include "partition/band_cut.h"
 #include "partition/border_price.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -39,17 +41,10 @@ struct Part {
     double length = 0;  ///< of its description
 };
 
-struct Pair {
-    std::uint32_t a = 0, b = 0;
-    double border = 0;  ///< shared length
-    double rise = 0;    ///< of the description length
-    Surface torus;      ///< of both
-    bool possible = false, measured = false;
+struct Pair : MergePair {
+    Surface torus;  ///< of both
+    bool possible = false;
 };
-
-bool by_regions(const Pair& x, const Pair& y) noexcept {
-    return x.a != y.a ? x.a < y.a : x.b < y.b;
-}
 
 class TorusMerger {
   public:
@@ -73,7 +68,7 @@ class TorusMerger {
     }
 
     std::vector<Surface> run() {
-        find_pairs();
+        pairs_ = merge_pairs_of<Pair>(passage_, labels_, control_);
         while (merge_round()) {
         }
         for (int pass = 0; pass < cut_passes && cut_borders(); ++pass) {
@@ -90,41 +85,6 @@ class TorusMerger {
     }
 
   private:
-    void find_pairs() {
-        constexpr std::size_t face_grain = 16384;
-        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
-            control_.check();
-            for (std::size_t f = begin; f < end; ++f) {
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const std::int32_t g = passage_.across(f, k);
-                    if (g < 0) continue;
-                    const std::int32_t a = labels_[f], b = labels_[static_cast<std::size_t>(g)];
-                    if (a < 0 || b <= a) continue;
-                    Pair pair;
-                    pair.a = static_cast<std::uint32_t>(a);
-                    pair.b = static_cast<std::uint32_t>(b);
-                    pair.border = partition::edge_length(mesh_, f, k);
-                    found.push_back(pair);
-                }
-            }
-        };
-        pairs_ = runtime::collect_blocks<Pair>(labels_.size(), face_grain, find);
-        unite_equal_pairs();
-    }
-    void unite_equal_pairs() {
-        std::stable_sort(pairs_.begin(), pairs_.end(), by_regions);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < pairs_.size(); ++i) {
-            if (kept > 0 && pairs_[kept - 1].a == pairs_[i].a && pairs_[kept - 1].b == pairs_[i].b) {
-                pairs_[kept - 1].border += pairs_[i].border;
-                pairs_[kept - 1].measured = false;
-            } else {
-                pairs_[kept++] = pairs_[i];
-            }
-        }
-        pairs_.resize(kept);
-    }
-
     double allowance(const Pair& p) const noexcept {
         const double smaller = std::min(parts_[p.a].area, parts_[p.b].area);
         const CompleteMergeRules& m = rules_.merge;
@@ -165,7 +125,6 @@ class TorusMerger {
     }
 
     void measure(Pair& p) const {
-        p.measured = true;
         p.possible = false;
         const Part &a = parts_[p.a], &b = parts_[p.b];
         const bool a_is_small = a.faces.size() < b.faces.size();
@@ -206,48 +165,14 @@ class TorusMerger {
     }
 
     bool merge_round() {
-        std::vector<std::uint32_t> unknown;
-        for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
-            if (!pairs_[i].measured) unknown.push_back(i);
-        }
-        runtime::parallel_for(unknown.size(), 1, [&](std::size_t i) {
-            control_.check();
-            measure(pairs_[unknown[i]]);
-        });
-        std::vector<std::uint32_t> order;
-        for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
-            if (pairs_[i].possible) order.push_back(i);
-        }
-        const auto merit = [&](std::uint32_t i) { return pairs_[i].rise - allowance(pairs_[i]); };
-        std::sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
-            const double mx = merit(x), my = merit(y);
-            return mx != my ? mx < my : x < y;
-        });
-        // A region takes part in one merge a round, with its best partner.
-        std::vector<std::uint8_t> taken(parts_.size(), 0);
-        std::vector<Pair> merges;
-        for (const std::uint32_t i : order) {
-            const Pair& p = pairs_[i];
-            if (taken[p.a] == 0 && taken[p.b] == 0) merges.push_back(p);
-            taken[p.a] = taken[p.b] = 1;
-        }
+        measure_pairs(
+            pairs_, [&](Pair& p) { measure(p); }, control_);
+        const std::vector<Pair> merges = best_merges(
+            pairs_, parts_.size(), [](const Pair& p) { return p.possible; },
+            [&](const Pair& p) { return p.rise - allowance(p); });
         if (merges.empty()) return false;
-        std::vector<std::uint32_t> into(parts_.size());
-        for (std::uint32_t r = 0; r < into.size(); ++r) into[r] = r;
-        std::vector<std::uint8_t> changed(parts_.size(), 0);
-        for (const Pair& p : merges) {
-            into[p.b] = p.a;
-            changed[p.a] = changed[p.b] = 1;
-            unite(p);
-        }
-        for (Pair& p : pairs_) {
-            if (changed[p.a] != 0 || changed[p.b] != 0) p.measured = false;
-            const std::uint32_t a = into[p.a], b = into[p.b];
-            p.a = std::min(a, b);
-            p.b = std::max(a, b);
-        }
-        std::erase_if(pairs_, [](const Pair& p) { return p.a == p.b; });
-        unite_equal_pairs();
+        for (const Pair& p : merges) unite(p);
+        rename_merged(pairs_, parts_.size(), merges);
         return true;
     }
 
@@ -270,11 +195,17 @@ class TorusMerger {
         return both;
     }
 
-    double energy_in(const Part& part, std::size_t f) const {
-        if (part.torus) return energy(SurfaceEvaluator(*part.torus), f, rules_.cut_weight);
-        return quadric::triangle_energy(part.proxy, mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2),
-                                        mesh_.normals[f], mesh_.areas[f])
-            .hybrid(rules_.cut_weight);
+    std::function<double(std::uint32_t)> energy_in(const Part& part) const {
+        if (part.torus) {
+            return [this, torus = SurfaceEvaluator(*part.torus)](std::uint32_t f) {
+                return energy(torus, f, rules_.cut_weight);
+            };
+        }
+        return [this, &proxy = part.proxy](std::uint32_t f) {
+            return quadric::triangle_energy(proxy, mesh_.corner(f, 0), mesh_.corner(f, 1), mesh_.corner(f, 2),
+                                            mesh_.normals[f], mesh_.areas[f])
+                .hybrid(rules_.cut_weight);
+        };
     }
 
     /// The borders of all tori, one after the other. False: nothing has moved.
@@ -294,8 +225,9 @@ class TorusMerger {
         const std::vector<std::uint32_t> band = band_of(a, b);
         for (std::size_t i = 0; i < band.size(); ++i) node_[band[i]] = static_cast<std::int32_t>(i);
         cut_.clear();
+        const auto energy_in_a = energy_in(parts_[p.a]), energy_in_b = energy_in(parts_[p.b]);
         for (const std::uint32_t f : band) {
-            double in_a = energy_in(parts_[p.a], f), in_b = energy_in(parts_[p.b], f);
+            double in_a = energy_in_a(f), in_b = energy_in_b(f);
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::int32_t g = passage_.across(f, k);
                 if (g < 0 || node_[static_cast<std::size_t>(g)] >= 0) continue;

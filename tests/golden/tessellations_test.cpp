@@ -62,27 +62,26 @@ std::size_t count(const Segmentation& s, SurfaceType type) {
         std::count_if(s.regions.begin(), s.regions.end(), [&](const Region& r) { return r.surface.type == type; }));
 }
 
-TEST(Tessellations, ThePointOfAHexagonalBarIsNoCone) {
+/// A bar of so many sides, its end turned down to .6 of its radius at `slope` of the difference.
+Segmentation pointed_bar(std::uint32_t sides, double slope) {
     Shape s;
-    const Ring foot = circle(s, 6, 1, 0), shoulder = circle(s, 6, 1, 5);
-    const Ring point = circle(s, 6, 0.6, 5 + 0.4 * std::cos(std::numbers::pi / 6));  // slopes of 45 degrees
+    const Ring foot = circle(s, sides, 1, 0), shoulder = circle(s, sides, 1, 5);
+    const Ring point = circle(s, sides, 0.6, 5 + 0.4 * slope);
     band(s, foot, shoulder);
     band(s, shoulder, point);
     lid(s, point);
     floor(s, foot);
-    const Segmentation found = sound(s);
+    return sound(s);
+}
+
+TEST(Tessellations, ThePointOfAHexagonalBarIsNoCone) {
+    const Segmentation found = pointed_bar(6, std::cos(std::numbers::pi / 6));  // slopes of 45 degrees
     EXPECT_EQ(found.regions.size(), 14U);
     EXPECT_EQ(count(found, SurfaceType::plane), 14U);
 }
 
 TEST(Tessellations, ThePointOfARoundBarOfTwelveFacetsIsACone) {
-    Shape s;
-    const Ring foot = circle(s, 12, 1, 0), shoulder = circle(s, 12, 1, 5), point = circle(s, 12, 0.6, 5.4);
-    band(s, foot, shoulder);
-    band(s, shoulder, point);
-    lid(s, point);
-    floor(s, foot);
-    const Segmentation found = sound(s);
+    const Segmentation found = pointed_bar(12, 1);
     EXPECT_EQ(found.regions.size(), 4U);
     EXPECT_EQ(count(found, SurfaceType::cone), 1U);
     EXPECT_EQ(count(found, SurfaceType::cylinder), 1U);
